@@ -7,10 +7,8 @@ use scene::Posture;
 use serde::{Deserialize, Serialize};
 use std::io;
 use std::path::Path;
-use support::file_error::FileError;
-use support::sealed_json;
 use support::severity::Finding;
-use support::{regular_file, whole_file};
+use support::{FileError, regular_file, sealed_json, whole_file};
 
 /// The checks, in the folder of a run.
 pub const CHECKS_FILE: &str = "checks.json";

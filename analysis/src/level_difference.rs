@@ -11,8 +11,8 @@ use design::optimise::outer_loop::SearchState;
 use design::pattern::design_vector::DesignVector;
 use design::sheet::kinematics::deployed_corners;
 use scene::{CoarseSearch, Level, LevelDifference, Scene};
-use support::fault::Fault;
 use support::statistics::rms_and_maximum;
+use support::{Fault, fault};
 
 /// What is compared of a sheet at a level.
 #[derive(Clone)]
@@ -31,13 +31,13 @@ pub fn deployed(
     scene: &Scene,
     design: &DesignVector,
 ) -> Result<(DesignProblem, Deployment), Fault> {
-    let problem = scene.problem().map_err(|error| Fault::from(error.to_string()))?;
+    let problem = scene.problem().map_err(|error| fault!("{error}"))?;
     let deployment = problem.deploy(design).and_then(|deployment| {
         deployment.at_full_load()?;
         Ok(deployment)
     });
     let level = scene.config.level;
-    let named = |error| Fault::from(format!("at the level `{level}` {error}"));
+    let named = |error| fault!("at the level `{level}` {error}");
     Ok((problem, deployment.map_err(named)?))
 }
 

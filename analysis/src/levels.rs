@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use std::convert::Infallible;
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
-use support::fault::Fault;
+use support::Fault;
 
 /// Steps of a search that are timed: one whose path is followed, and those up to the next one.
 const TIMED: usize = 10;

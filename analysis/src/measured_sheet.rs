@@ -5,7 +5,7 @@ use crate::path_fit::{Fit, MIN_POINTS, PathFit};
 use crate::shape_path::ShapePath;
 use design::geometry::similarity::Scale;
 use std::collections::HashSet;
-use support::fault::{Fault, fault};
+use support::{Fault, fault, refuse};
 
 /// A measured sheet and its path.
 #[derive(Clone, Debug)]
@@ -26,23 +26,21 @@ impl MeasuredSheet {
         let mut panels = HashSet::new();
         let alone = points.iter().all(|point| panels.insert(point.mark.panel));
         if points.len() < MIN_POINTS {
-            let what = format!(
+            refuse!(
                 "{} measured points: at least {MIN_POINTS} are needed for pose, scale and load factor",
                 points.len()
             );
-            return Err(Fault::from(what));
         }
         if scale == Scale::Free && path.end() > 0.0 && alone {
-            return Err(fault(
-                "",
-                "without two points on one panel, a larger scale and a wider opening look alike",
-                "measure corners, or measure in mm, cm or m",
-            ));
+            refuse!(
+                "without two points on one panel, a larger scale and a wider opening look alike: measure corners, or measure in mm, \
+     cm or m"
+            );
         }
         let problem = PathFit { path, points, scale };
         let best = problem.fit(problem.best_position());
         let full = problem.fit(path.end());
-        let coincide = || Fault::from("the measured points coincide");
+        let coincide = || fault!("the measured points coincide");
         let (best, full) = best.zip(full).ok_or_else(coincide)?;
         Ok(Self { load_factor_error: problem.load_factor_error(&best), best, full })
     }

@@ -4,7 +4,6 @@ use crate::database::Database;
 use crate::rows::Row;
 use crate::split::{Part, geometry, state};
 use std::collections::{BTreeMap, BTreeSet};
-use std::fmt;
 
 /// Maximum difference between the energy of a ray and the work of its forces, relative to the
 /// energy, as the root mean square over the rays. Increments of a campaign leave 1 %; a wrong unit
@@ -14,7 +13,8 @@ const WORK: f64 = 0.2;
 const LEAK: &str = "a geometry of the test or validation part occurs in the training part";
 
 /// Something that makes a database unfit for training.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{what} ({count} times, for example job {job})")]
 pub struct Defect {
     /// What is wrong, in one sentence.
     pub what: &'static str,
@@ -22,12 +22,6 @@ pub struct Defect {
     pub count: usize,
     /// Job of one of them.
     pub job: String,
-}
-
-impl fmt::Display for Defect {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        write!(f, "{} ({} times, for example job {})", self.what, self.count, self.job)
-    }
 }
 
 impl Database {

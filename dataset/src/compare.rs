@@ -8,6 +8,7 @@
 use crate::database::Database;
 use crate::rows::{Fidelity, RayKey, Row, ray_key};
 use hinge::HingeSample;
+use std::array::from_fn;
 use std::collections::BTreeMap;
 
 /// The quantities that are compared.
@@ -107,7 +108,7 @@ pub fn reference_rms<'a>(states: impl IntoIterator<Item = &'a ComparedState>) ->
 pub fn relative_rms(states: &[ComparedState], minimum: [f64; 6]) -> [f64; 6] {
     let off = rms(states, |state, i| state.value[i] - state.reference[i]);
     let scale = reference_rms(states);
-    std::array::from_fn(|i| off[i] / scale[i].max(minimum[i]).max(f64::MIN_POSITIVE))
+    from_fn(|i| off[i] / scale[i].max(minimum[i]).max(f64::MIN_POSITIVE))
 }
 
 fn rms<'a>(
@@ -123,7 +124,7 @@ fn rms<'a>(
             }
         }
     }
-    std::array::from_fn(|i| (squares[i] / f64::max(counts[i], 1.0)).sqrt())
+    from_fn(|i| (squares[i] / f64::max(counts[i], 1.0)).sqrt())
 }
 
 /// The rays on a mesh, by ray and hash of the material law. The last row of a job identifies its

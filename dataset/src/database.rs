@@ -1,13 +1,13 @@
 //! A database: consistent rows, their Parquet file and its manifest.
 
 use crate::digest::{Digest, by_job_and_lambda};
-use crate::error::{DatasetError, refused};
 use crate::manifest::Manifest;
 use crate::parquet;
 use crate::rows::{Fidelity, Row};
-use crate::schema::COLUMNS;
+use crate::schema::{COLUMNS, DatasetError};
 use crate::split::{Part, SplitPlan, geometry};
 use std::collections::BTreeSet;
+use support::{Fault, fault};
 
 /// Rows in the order of job and lambda, with the bytes of their Parquet file and its manifest.
 #[derive(Clone, Debug)]
@@ -92,8 +92,8 @@ impl Database {
     }
 
     /// The table as CSV, in full precision.
-    pub fn to_csv(&self) -> Result<Vec<u8>, DatasetError> {
-        self.csv().map_err(|error| refused(format!("the table cannot be written as CSV: {error}")))
+    pub fn to_csv(&self) -> Result<Vec<u8>, Fault> {
+        self.csv().map_err(|error| fault!("the table cannot be written as CSV: {error}"))
     }
 
     fn csv(&self) -> csv::Result<Vec<u8>> {

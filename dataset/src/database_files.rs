@@ -5,15 +5,18 @@
 //! the two the next reader renames it.
 
 use crate::database::Database;
-use crate::error::{DatasetError, refused};
+use crate::digest::{Digest, by_job_and_lambda};
 use crate::manifest::{FORMAT_VERSION, Manifest};
-use crate::parquet;
-use std::fmt::Display;
+use crate::parquet::{self, Hashing, Table};
+use crate::rows::Row;
+use crate::schema::DatasetError;
+use crate::split::SplitPlan;
+use crate::summary::Contents;
+use std::fmt::{self, Display};
 use std::io::Write;
 use std::path::{Path, PathBuf};
-use support::fault::{Fault, fault, unread, unwritten};
 use support::whole_file::{self, Unnamed};
-use support::{regular_file, sealed_json};
+use support::{Fault, fault, refuse, regular_file, sealed_json, unread, unwritten};
 
 impl Database {
     /// Reads `X.parquet` and its manifest `X.json`; an error if the hash of the file is not that in
@@ -23,15 +26,15 @@ impl Database {
             Some(finished) => finished,
             None => read_files(path)?,
         };
-        let rows = parquet::decode(&parquet)
-            .map_err(|error| fault(path.display().to_string(), error.to_string(), ""))?;
+        let rows =
+            parquet::decode(&parquet).map_err(|error| fault!("{}: {error}", path.display()))?;
         match manifest.disagrees(&rows) {
             None => Ok(Self { rows, parquet, manifest }),
-            Some(what) => Err(refused(format!(
+            Some(what) => refuse!(
                 "{} and its manifest do not belong together: {what}; copy the two files again, or \
                  collect the campaign again",
                 path.display()
-            ))),
+            ),
         }
     }
 
@@ -82,20 +85,20 @@ fn finish(path: &Path) -> Result<Option<(Manifest, Vec<u8>)>, DatasetError> {
 fn read_files(path: &Path) -> Result<(Manifest, Vec<u8>), DatasetError> {
     let parquet = read_bytes(path)?;
     if let Some(what) = other_kind(&parquet) {
-        return Err(refused(format!(
+        refuse!(
             "{} {what}: a database is a Parquet file (.parquet) with its manifest",
             path.display()
-        )));
+        );
     }
     let manifest = read_manifest(&manifest_path(path))?;
     let found = parquet::hash(&parquet);
     if found != manifest.hash {
-        return Err(refused(format!(
+        refuse!(
             "{} does not match its manifest (its BLAKE3 hash is {found}, not {}); copy both files \
              from the same place, or collect the campaign again",
             path.display(),
             manifest.hash
-        )));
+        );
     }
     Ok((manifest, parquet))
 }
@@ -104,10 +107,10 @@ fn read_files(path: &Path) -> Result<(Manifest, Vec<u8>), DatasetError> {
 pub(crate) fn refuse_existing(path: &Path, replace: bool) -> Result<(), DatasetError> {
     let files = [path.to_owned(), manifest_path(path)];
     match files.into_iter().find(|path| !replace && path.exists()) {
-        Some(path) => Err(refused(format!(
+        Some(path) => refuse!(
             "{} already exists; choose another name, or replace it with `--replace`",
             path.display()
-        ))),
+        ),
         None => Ok(()),
     }
 }
@@ -129,21 +132,18 @@ fn read_manifest(path: &Path) -> Result<Manifest, DatasetError> {
     let bytes = read_bytes(path)?;
     let Version { format_version } = serde_json::from_slice(&bytes).map_err(no_manifest(path))?;
     if format_version != u64::from(FORMAT_VERSION) {
-        return Err(refused(format!(
+        refuse!(
             "{} has the format version {format_version}, but this program reads only version \
              {FORMAT_VERSION}: collect the campaign again, or use the program that wrote it",
             path.display()
-        )));
+        );
     }
     Ok(sealed_json::from_slice(&bytes).map_err(no_manifest(path))?)
 }
 
 /// Maps the error of the manifest `path`, for use in `map_err`.
 fn no_manifest<E: Display>(path: &Path) -> impl FnOnce(E) -> Fault {
-    move |error| {
-        let what = format!("{} is not a manifest of a database: {error}", path.display());
-        Fault::from(what)
-    }
+    move |error| fault!("{} is not a manifest of a database: {error}", path.display())
 }
 
 /// What a file is that does not begin like a Parquet file.
@@ -158,4 +158,98 @@ fn other_kind(bytes: &[u8]) -> Option<&'static str> {
 
 fn read_bytes(path: &Path) -> Result<Vec<u8>, Fault> {
     regular_file::read(path).map_err(unread(path))
+}
+
+// Writing a database whose rays arrive one after the other. The rows of one group of the Parquet
+// file are in memory at a time; of all other rows 24 bytes, and of every ray its id, from which
+// domain and split are computed at the end.
+
+/// A database that was written while its rays arrived.
+#[derive(Clone, Debug)]
+pub struct Collected {
+    manifest: Manifest,
+    contents: Contents,
+}
+
+impl Collected {
+    /// Writes `X.parquet` and its manifest `X.json` of rays, each the rows of one job. The jobs
+    /// must come in the order of their ids. The files are those that
+    /// [`Database::collect`](crate::Database::collect) and
+    /// [`Database::write`](crate::Database::write) give, and appear only when they are complete.
+    ///
+    /// An existing file is an error unless `replace` is true.
+    pub fn write<E: From<DatasetError>>(
+        rays: impl IntoIterator<Item = Result<Vec<Row>, E>>,
+        plan: &SplitPlan,
+        path: &Path,
+        replace: bool,
+    ) -> Result<Self, E> {
+        refuse_existing(path, replace)?;
+        let mut file =
+            Unnamed::next_to(path).map_err(unwritten(path)).map_err(DatasetError::from)?;
+        let failed = |error: DatasetError| unwritten(path)(error).into();
+        let mut digest = Digest::default();
+        let mut contents = Contents::default();
+        let mut hashing = Hashing::new(file.file());
+        let mut table = Table::new(&mut hashing).map_err(failed)?;
+        for ray in rays {
+            let mut ray = digest.accepted(ray?);
+            ray.sort_by(by_job_and_lambda);
+            digest.add(&ray)?;
+            contents.add(&ray);
+            table.add(ray).map_err(failed)?;
+        }
+        table.finish().map_err(failed)?;
+        let manifest = digest.manifest(hashing.hash(), plan)?;
+        publish(file, &manifest, path)?;
+        Ok(Self { manifest, contents })
+    }
+}
+
+impl fmt::Display for Collected {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        self.contents.summary(&self.manifest, f)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::database::Database;
+    use crate::rows::tests::rows;
+
+    #[test]
+    fn rays_that_arrive_one_by_one_give_the_files_of_all_rows_together() {
+        let folder = tempfile::tempdir().unwrap();
+        let [together, apart] = ["together", "apart"].map(|name| folder.path().join(name));
+        let plan = SplitPlan::default();
+        let mut rows = rows(40);
+        rows[57].sample.w = -1.0;
+        let database = Database::collect(rows.clone(), &plan).unwrap();
+        database.write(&together.with_extension("parquet"), false).unwrap();
+
+        let path = apart.with_extension("parquet");
+        let write = |rows: &[Row], replace| {
+            let rays = rows.chunks(10).map(|ray| {
+                let backwards = ray.iter().rev().cloned();
+                Ok::<_, DatasetError>(backwards.collect())
+            });
+            Collected::write(rays, &plan, &path, replace)
+        };
+        let collected = write(&rows, false).unwrap();
+        for extension in ["parquet", "json"] {
+            let read = |path: &Path| std::fs::read(path.with_extension(extension)).unwrap();
+            assert_eq!(read(&apart), read(&together), "{extension}");
+        }
+        assert_eq!(collected.to_string(), database.to_string());
+
+        let refusal = |rows: &[Row], replace| write(rows, replace).unwrap_err().to_string();
+        assert!(refusal(&rows, false).contains("already exists"));
+        // A ray that is given twice, or no ray that can be used, leaves the old files.
+        let twice = [&rows[..20], &rows[10..]].concat();
+        assert!(refusal(&twice, true).contains("occurs twice"));
+        assert!(refusal(&[], true).starts_with("no rows: "));
+        assert_eq!(Database::read(&path).unwrap().rows(), database.rows());
+        assert_eq!(folder.path().read_dir().unwrap().count(), 4);
+    }
 }

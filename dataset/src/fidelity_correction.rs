@@ -17,9 +17,10 @@
 use crate::bridge::{Bridge, TERMS};
 use crate::compare::{COMPARED, ComparedRay, ComparedState};
 use crate::database::Database;
-use crate::error::{DatasetError, refused};
 use crate::rows::{Fidelity, Row};
+use crate::schema::DatasetError;
 use hinge::HingeSample;
+use support::refuse;
 
 impl Database {
     /// The rays, corrected to the finer mesh by those that were solved on it too, but for
@@ -84,10 +85,10 @@ pub fn left_out(rays: &[ComparedRay]) -> Result<LeftOut, DatasetError> {
     let (found, needed) = (rays.len(), TERMS.len() + 1);
     if found < needed {
         // Too few to fit every term when one ray is left out.
-        return Err(refused(format!(
+        refuse!(
             "{found} rays are solved on the finer mesh too, but the correction needs at least \
              {needed}: increase `finer` in the campaign"
-        )));
+        );
     }
     let bridges: Vec<Bridge> =
         (0..rays.len()).map(|i| Bridge::fit(&[&rays[..i], &rays[i + 1..]].concat())).collect();

@@ -23,33 +23,27 @@
 
 #![cfg_attr(not(test), warn(unreachable_pub))]
 
-mod acceptance;
 mod bridge;
 mod check;
 mod compare;
 mod database;
 mod database_files;
 mod digest;
-mod error;
 mod fidelity_correction;
 mod manifest;
-mod meshes;
 mod parquet;
-mod ray_stream;
 mod rows;
 mod schema;
 mod split;
 mod summary;
 
-pub use acceptance::{AcceptanceLimits, Rejection};
 pub use check::Defect;
 pub use compare::{COMPARED, ComparedRay, ComparedState, compare, reference_rms, relative_rms};
 pub use database::Database;
-pub use error::DatasetError;
 pub use fidelity_correction::{LeftOut, left_out};
+pub use manifest::{AcceptanceLimits, FORMAT_VERSION, FinerMesh, Manifest, Rejection};
 
-pub use manifest::{FORMAT_VERSION, FinerMesh, Manifest};
-pub use ray_stream::Collected;
+pub use database_files::Collected;
 pub use rows::{Fidelity, Row, with_mirrored};
-pub use schema::{COLUMNS, ColumnMeaning};
+pub use schema::{COLUMNS, ColumnMeaning, DatasetError};
 pub use split::{Part, Split, SplitPlan};

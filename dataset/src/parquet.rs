@@ -1,14 +1,13 @@
 //! Encoding and decoding of Parquet files, and their hash. A file is written in groups of rows, so
 //! that its table need not be in memory.
 
-use crate::error::{DatasetError, refused};
 use crate::rows::Row;
-use crate::schema;
+use crate::schema::{self, DatasetError};
 use polars::io::parquet::write::{BatchedWriter, KeyValueMetadata};
 use polars::prelude::{CompatLevel, ParquetReader, ParquetWriter, SchemaExt, SerReader};
 use polars_parquet::write::schema_to_metadata_key;
 use std::io::{Cursor, Write};
-use support::caught_panic;
+use support::{caught_panic, fault, refuse};
 
 /// Number of rows of a group. The rows of one group are in memory at a time.
 const GROUP: usize = 1 << 16;
@@ -65,15 +64,13 @@ pub(crate) fn encode(rows: &[Row]) -> Result<Vec<u8>, DatasetError> {
 /// The rows of a Parquet file. The reader panics at some malformed files, which are errors like all
 /// others.
 pub(crate) fn decode(bytes: &[u8]) -> Result<Vec<Row>, DatasetError> {
-    let read = || {
+    let read = || -> Result<_, DatasetError> {
         let mut reader = ParquetReader::new(Cursor::new(bytes));
         refuse_expanding(&mut reader, bytes.len())?;
         Ok(reader.finish()?)
     };
-    let frame = caught_panic::catch(read).unwrap_or_else(|why| {
-        let what = format!("the file is malformed: the Parquet reader fails with `{why}`");
-        Err(refused(what))
-    })?;
+    let failed = |why| fault!("the file is malformed: the Parquet reader fails with `{why}`");
+    let frame = caught_panic::catch(read).map_err(failed)??;
     schema::from_frame(&frame, EXPANSION.saturating_mul(bytes.len()))
 }
 
@@ -100,10 +97,10 @@ fn refuse_expanding(
     }
     values = values.max(in_columns);
     if values > VALUES_A_BYTE.saturating_mul(bytes) || size > EXPANSION.saturating_mul(bytes) {
-        return Err(refused(format!(
+        refuse!(
             "the file claims {values} values in {bytes} bytes, which measured data never do: it \
              is damaged, or made to fill the memory"
-        )));
+        );
     }
     Ok(())
 }

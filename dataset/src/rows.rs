@@ -6,7 +6,7 @@ use mesher::Tier;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::str::FromStr;
-use support::fault::Fault;
+use support::Fault;
 
 /// A sample of (eps, g) -> (W, grad W, D) with its provenance; section 2.4.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -1,9 +1,8 @@
 //! The columns of the database, their units and their meanings.
 
-use crate::error::{DatasetError, refused};
 use crate::rows::Row;
 use polars::prelude::{Column, DataFrame, IntoColumn, NamedFrom, Series};
-use support::fault::Fault;
+use support::{Fault, fault, refuse};
 
 /// What a column of a database holds.
 #[derive(Debug)]
@@ -156,6 +155,17 @@ pub static COLUMNS: [ColumnMeaning; 32] = [
     ),
 ];
 
+/// Why a database cannot be collected, read, written or corrected.
+#[derive(Debug, thiserror::Error)]
+pub enum DatasetError {
+    /// The table has other columns or types.
+    #[error("the table is not a valid database: {0}")]
+    Table(#[from] polars::error::PolarsError),
+    /// Any other mistake.
+    #[error(transparent)]
+    Fault(#[from] Fault),
+}
+
 /// The table of `rows`.
 pub(crate) fn to_frame(rows: &[Row]) -> Result<DataFrame, DatasetError> {
     let column = |column: &ColumnMeaning| -> Column {
@@ -177,21 +187,20 @@ pub(crate) fn from_frame(frame: &DataFrame, most_text: usize) -> Result<Vec<Row>
     let mut left = most_text;
     let mut rows = vec![Row::default(); frame.height()];
     for ColumnMeaning { name, value, .. } in &COLUMNS {
-        let gap = |index| refused(format!("column `{name}` has no value in row {index}"));
+        let gap = |index| fault!("column `{name}` has no value in row {index}");
         let series = frame.column(name)?;
         match value {
             Value::Text(_, set) => {
                 for (index, (row, text)) in rows.iter_mut().zip(series.str()?.iter()).enumerate() {
                     let text = text.ok_or_else(|| gap(index))?;
                     left = left.checked_sub(text.len()).ok_or_else(|| {
-                        refused(format!(
+                        fault!(
                             "the texts of the table exceed {most_text} bytes at row {index} of the \
                              column `{name}`: the file is damaged, or made to fill the memory"
-                        ))
+                        )
                     })?;
-                    set(row, text).map_err(|error| {
-                        refused(format!("column `{name}`, row {index}: {error}"))
-                    })?;
+                    set(row, text)
+                        .map_err(|error| fault!("column `{name}`, row {index}: {error}"))?;
                 }
             }
             Value::Number(_, set) => {
@@ -209,10 +218,10 @@ pub(crate) fn from_frame(frame: &DataFrame, most_text: usize) -> Result<Vec<Row>
         }
     }
     match rows.iter().find(|row| !is_finite(row)) {
-        Some(Row { job, sample, .. }) => Err(refused(format!(
+        Some(Row { job, sample, .. }) => refuse!(
             "job {job}, lambda = {}: the row contains a number that is not finite",
             sample.lambda
-        ))),
+        ),
         None => Ok(rows),
     }
 }

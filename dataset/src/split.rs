@@ -3,14 +3,15 @@
 //! All rays of one (w_lig, alpha) and of its mirror image belong to the same part. The test part
 //! therefore contains only geometries that are not in the training part.
 
-use crate::error::{DatasetError, refused};
 use crate::rows::Row;
+use crate::schema::DatasetError;
 use rand::SeedableRng;
 use rand::seq::SliceRandom;
 use rand_chacha::ChaCha8Rng;
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::{FRAC_PI_2, PI};
+use support::refuse;
 
 /// How geometries are assigned to the parts.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -58,18 +59,18 @@ impl Split {
     pub(crate) fn deal(geometries: &Geometries, plan: &SplitPlan) -> Result<Self, DatasetError> {
         let SplitPlan { validation, test, .. } = *plan;
         if ![validation, test].iter().all(|share| (0.0..0.5).contains(share) && *share > 0.0) {
-            return Err(refused(format!(
+            refuse!(
                 "the fractions validation = {validation} and test = {test} violate \
                  0 < fraction < 0.5"
-            )));
+            );
         }
         let mut geometries: Vec<&Vec<String>> = geometries.0.values().collect();
         let count = geometries.len();
         if count < 3 {
-            return Err(refused(format!(
+            refuse!(
                 "{count} geometries cannot be split into training, validation and test: at least \
                  3 are needed"
-            )));
+            );
         }
         geometries.shuffle(&mut ChaCha8Rng::seed_from_u64(plan.seed));
         // Rounding leaves every part at least one geometry.

@@ -11,7 +11,6 @@ pub mod load_step;
 pub mod load_steps;
 pub mod mounting;
 pub mod newton;
-pub mod panel_force;
 pub mod potential;
 pub mod predictor;
 pub mod refined_solve;

@@ -8,6 +8,5 @@ pub mod ideal_deployment;
 pub mod kinematics;
 pub mod opening_limits;
 pub mod panel;
-pub mod panel_vectors;
 pub mod topology;
 pub mod validity;

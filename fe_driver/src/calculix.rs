@@ -5,7 +5,4 @@ pub(crate) mod cards;
 pub(crate) mod dat;
 pub(crate) mod deck;
 pub(crate) mod deck_run;
-pub(crate) mod driven_arc;
-pub(crate) mod fields;
 pub(crate) mod response;
-pub(crate) mod sta;

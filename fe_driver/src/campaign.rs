@@ -3,12 +3,8 @@
 pub(crate) mod campaign_folder;
 pub(crate) mod definition;
 pub(crate) mod extra_rays;
-pub(crate) mod history;
-pub(crate) mod plan;
-pub(crate) mod restore;
 pub(crate) mod run;
 pub(crate) mod sampling;
-pub(crate) mod shard;
 pub(crate) mod slurm;
 pub(crate) mod spot_paths;
 pub(crate) mod status;

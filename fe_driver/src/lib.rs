@@ -75,22 +75,17 @@ mod sheet;
 mod solve;
 
 pub(crate) use calculix::cards::{
-    real, write_amplitude, write_element, write_increments, write_material, write_nodes, write_set,
+    DrivenArc, PanelMotion, even_lambdas, real, rotated, write_amplitude, write_element,
+    write_increments, write_material, write_motion, write_nodes, write_set,
 };
 pub(crate) use calculix::dat::{Block, Printed, at_node, numbers, read_printed};
 pub(crate) use calculix::deck_run::{DeckRun, read_if_there, time_reached};
-pub(crate) use calculix::driven_arc::{
-    DrivenArc, PanelMotion, even_lambdas, rotated, write_motion,
-};
 pub(crate) use calculix::response::{Damage, samples};
-pub(crate) use campaign::campaign_folder::{CampaignFolder, Index};
+pub(crate) use campaign::campaign_folder::{CampaignFolder, EventLog, Index};
 pub(crate) use campaign::extra_rays::read_extra_rays;
-pub(crate) use campaign::history::{EventLog, history_name, overlaps};
 pub(crate) use record_file::{damaged, entries, read_json, short_hash, unless_damaged, write_json};
-pub(crate) use sheet::rigid_body::{GRAVITY, POINTS, RigidBody, STIFFNESS};
-pub(crate) use sheet::rigid_motion::RigidMotion;
 pub(crate) use sheet::sheet_deck::{SheetModel, force_set, hinge_set};
-pub(crate) use sheet::sheet_nodes::SheetNodes;
+pub(crate) use sheet::sheet_nodes::{GRAVITY, STIFFNESS, SheetNodes};
 pub(crate) use sheet::sheet_output::{SheetFrame, SheetLayout};
 pub(crate) use sheet::sheet_problem::SECONDS;
 pub(crate) use sheet::sheet_response::states;
@@ -98,22 +93,18 @@ pub(crate) use solve::attempts::{Event, Job, Workers, now};
 pub(crate) use solve::solve_folder::{SolveState, host};
 
 pub use calculix::calculix_solver::{CalculiX, reached};
-pub use calculix::dat::{Frame, Layout, read_dat};
+pub use calculix::dat::{Frame, Increment, Layout, read_dat, read_sta};
 pub use calculix::deck::{WindowModel, deck};
 pub use calculix::deck_run::{CCX, Ccx, CcxRun};
-pub use calculix::sta::{Increment, read_sta};
-pub use campaign::campaign_folder::finished_windows;
-pub use campaign::definition::{Campaign, CampaignError, JobPart};
-pub use campaign::plan::{Plan, plan, prepare};
-pub use campaign::restore::{CollectedWindow, Restored, restore};
-pub use campaign::run::{Progress, RunOptions, run};
+pub use campaign::campaign_folder::{Shard, finished_windows};
+pub use campaign::definition::{Campaign, JobPart};
+pub use campaign::run::{CollectedWindow, Progress, Restored, RunOptions, restore, run};
 pub use campaign::sampling::RayBox;
-pub use campaign::shard::Shard;
 pub use campaign::slurm::{
     ArrayStates, ArrayTasks, Submission, array_states, slurm_folder, submit_array,
 };
 pub use campaign::spot_paths::{DrawnStates, SpotPath, random_paths};
-pub use campaign::status::{Status, Tally, Throughput, known_parts, status};
+pub use campaign::status::{Plan, Status, Tally, Throughput, known_parts, plan, prepare, status};
 pub use sheet::sheet_problem::{
     Held, History, OutOfPlaneRestraint, Place, Pulled, SheetProblem, SheetSolve,
 };
@@ -122,11 +113,8 @@ pub use sheet::sheet_states::{HingeState, PanelState, SheetState, SheetStates, S
 pub use solve::attempts::SolveListError;
 pub use solve::deformation_path::{DeformationPath, HingePath, Ray};
 pub use solve::failure::{AttemptKind, Cause, FailureKind, SolveError};
-pub use solve::problem::{Solve, SolvedPath};
 pub use solve::service::SolveService;
 pub use solve::solve_folder::{SolveFolder, SolveRecord, SolveStore};
-pub use solve::solved::Solved;
-pub use solve::solver::{Solution, Solver, ToolVersions};
-pub use solve::step_control::StepControl;
-pub use solve::window_solve::{WindowProblem, WindowSolve};
-pub use support::file_error::FileError;
+pub use solve::solver::{Solution, Solve, Solved, SolvedPath, Solver, ToolVersions};
+pub use solve::window_solve::{StepControl, WindowProblem, WindowSolve};
+pub use support::FileError;

@@ -5,8 +5,7 @@ use serde::de::DeserializeOwned;
 use std::fs::DirEntry;
 use std::io;
 use std::path::Path;
-use support::file_error::FileError;
-use support::{regular_file, sealed_json, whole_file};
+use support::{FileError, regular_file, sealed_json, whole_file};
 
 /// Separates damage from other errors of reading a file: `None` if the contents are damaged.
 pub(crate) fn unless_damaged<T>(read: Result<T, FileError>) -> Result<Option<T>, FileError> {

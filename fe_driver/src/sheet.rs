@@ -1,7 +1,5 @@
 //! Whole sheets by finite elements: every window, and panels that are rigid or meshed.
 
-pub(crate) mod rigid_body;
-pub(crate) mod rigid_motion;
 pub(crate) mod sheet_deck;
 pub(crate) mod sheet_nodes;
 pub(crate) mod sheet_output;

@@ -4,12 +4,9 @@
 pub(crate) mod attempts;
 pub(crate) mod deformation_path;
 pub(crate) mod failure;
-pub(crate) mod problem;
 pub(crate) mod service;
 pub(crate) mod solve_folder;
-pub(crate) mod solved;
 pub(crate) mod solver;
-pub(crate) mod step_control;
 #[cfg(test)]
 pub(crate) mod tests;
 pub(crate) mod window_solve;

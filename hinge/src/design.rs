@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
-use support::fault::Fault;
+use support::{Fault, refuse};
 
 /// Geometry of the ligament left between the tip of a main cut and a secondary cut; (7).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -133,26 +133,25 @@ impl HingeDesign {
     /// panels of a sheet.
     pub fn validate_coupon(&self) -> Result<(), InvalidDesign> {
         let Self { w_lig, alpha, fillet_ratio, kerf, r_win } = *self;
-        let refuse = |what: String| Err(Fault::from(what).into());
         let named = ["w_lig", "alpha", "fillet_ratio", "kerf", "r_win"];
         let values = [w_lig, alpha, fillet_ratio, kerf, r_win];
         if let Some((name, value)) = named.iter().zip(values).find(|(_, it)| !it.is_finite()) {
-            return refuse(format!("{name} = {value} is not a finite number"));
+            refuse!("{name} = {value} is not a finite number");
         }
         if !(MIN_W_LIG..=MAX_W_LIG).contains(&w_lig) {
-            return refuse(format!(
+            refuse!(
                 "w_lig = {w_lig} mm violates {MIN_W_LIG} <= w_lig <= {MAX_W_LIG}: lengths are in mm{}",
                 unit_slip(w_lig)
-            ));
+            );
         }
         if alpha <= 0.0 || alpha >= PI {
             let deg = alpha.to_degrees();
-            return refuse(format!("alpha = {deg:.4} deg violates 0 < alpha < 180"));
+            refuse!("alpha = {deg:.4} deg violates 0 < alpha < 180");
         }
         if fillet_ratio <= 0.0 || fillet_ratio >= 1.0 {
-            return refuse(format!(
+            refuse!(
                 "fillet_ratio = {fillet_ratio} violates 0 < fillet_ratio < 1 (the hole would cut the ligament)"
-            ));
+            );
         }
         let limit = 2.0 * self.fillet_radius();
         if kerf <= 0.0 || kerf >= limit {
@@ -164,11 +163,10 @@ impl HingeDesign {
     /// An error unless the radius of the window exceeds `minimum` ligament widths.
     fn exceeds_radius(&self, minimum: f64) -> Result<(), InvalidDesign> {
         let (r_win, limit) = (self.r_win, minimum * self.w_lig);
-        if r_win > limit {
-            return Ok(());
+        if r_win <= limit {
+            refuse!("r_win = {r_win} mm violates r_win > {minimum} w_lig = {limit} mm");
         }
-        let what = format!("r_win = {r_win} mm violates r_win > {minimum} w_lig = {limit} mm");
-        Err(Fault::from(what).into())
+        Ok(())
     }
 }
 

@@ -23,11 +23,8 @@
 //! both ends, so that gamma is twice differentiable in w_lig. (Klosowski et al., "Efficient
 //! collision detection using bounding volume hierarchies of k-DOPs", 1998.)
 
-mod covered_states;
 mod directions;
 mod stored_domain;
-
-pub use stored_domain::InvalidDomain;
 
 use crate::domain::directions::{DIRECTION, DIRECTIONS, EXPONENT, norm};
 use crate::net_ligament::{NetLigament, NetLigamentJet};
@@ -237,7 +234,7 @@ fn is_straight(mean_path: &[f64; 2]) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::domain::covered_states::MOST_WIDTHS;
+    use crate::domain::stored_domain::MOST_WIDTHS;
 
     fn design(w_lig: f64) -> HingeDesign {
         HingeConstants::PAPER.hinge(w_lig, 1.3)

@@ -49,10 +49,10 @@ mod sample;
 
 pub use deformation::{HingeDeformation, HingeForces};
 pub use design::{HingeConstants, HingeDesign, InvalidDesign};
-pub use domain::{InvalidDomain, TrainingDomain};
+pub use domain::TrainingDomain;
 pub use gradient::{DesignGradient, HingeGradient};
 pub use jet::Jet;
-pub use material::{Creep, InvalidMaterial, MaterialError, STANDARD_GRAVITY, SheetMaterial};
+pub use material::{Creep, STANDARD_GRAVITY, SheetMaterial};
 pub use net_ligament::{NetLigament, NetLigamentJet};
 pub use regime::Regime;
 pub use released::ReleasedHinge;

@@ -3,9 +3,8 @@
 use crate::Regime;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use std::path::{Path, PathBuf};
-use support::key_limits;
-use support::toml_file::{self, ConfigError};
+use std::path::Path;
+use support::{Fault, fault, key_limits, refuse, toml_file};
 
 /// Standard acceleration of gravity, rounded (m/s^2 = N/kg).
 pub const STANDARD_GRAVITY: f64 = 9.81;
@@ -65,26 +64,6 @@ pub struct Creep {
 /// beryllium 155, metals 20 to 30, plastics 0.2 to 7.
 const STIFFEST: f64 = 200.0;
 
-/// Why a material could not be read.
-#[derive(Debug, thiserror::Error)]
-#[allow(missing_docs, reason = "the message of a variant is its documentation")]
-pub enum MaterialError {
-    #[error(transparent)]
-    Config(#[from] ConfigError),
-    #[error("{path}: {source}", path = .path.display())]
-    Invalid { path: PathBuf, source: InvalidMaterial },
-}
-
-/// A material with impossible values, or with values in other units.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("material `{material}`: {reason}")]
-pub struct InvalidMaterial {
-    /// Name of the material.
-    pub material: String,
-    /// The violated rule, with the value.
-    pub reason: String,
-}
-
 impl SheetMaterial {
     /// The regime of a ligament of `w_lig` (mm) in a sheet of this thickness.
     pub fn regime(&self, w_lig: f64) -> Regime {
@@ -92,11 +71,11 @@ impl SheetMaterial {
     }
 
     /// Reads a material and rejects impossible values.
-    pub fn load(path: &Path) -> Result<Self, MaterialError> {
+    pub fn load(path: &Path) -> Result<Self, Fault> {
         let material: Self = toml_file::read(path)?;
         match material.validate() {
             Ok(()) => Ok(material),
-            Err(source) => Err(MaterialError::Invalid { path: path.to_owned(), source }),
+            Err(reason) => Err(fault!("{}: {reason}", path.display())),
         }
     }
 
@@ -142,39 +121,35 @@ impl SheetMaterial {
 
     /// Rejects impossible values and the usual unit errors (GPa for MPa, m for mm, g/cm^3 for
     /// kg/m^3).
-    pub fn validate(&self) -> Result<(), InvalidMaterial> {
-        let refuse = |reason: String| Err(InvalidMaterial { material: self.name.clone(), reason });
-        if let Err(error) = key_limits::check::<Self>(self) {
-            return refuse(error.to_string());
-        }
+    pub fn validate(&self) -> Result<(), Fault> {
+        self.check().map_err(|reason| fault!("material `{}`: {reason}", self.name))
+    }
+
+    fn check(&self) -> Result<(), Fault> {
+        key_limits::check::<Self>(self)?;
         let stiffness = self.young / self.density_kg_m3;
         if stiffness > STIFFEST {
-            return refuse(format!(
+            refuse!(
                 "young = {} MPa is {stiffness:.0} MPa for each kg/m^3 of its density, more than the {STIFFEST} that any sheet has: check \
                  both, and in a tensile test width, thickness, gauge length and units",
                 self.young
-            ));
+            );
         }
         match self.plastic.first() {
-            None => return refuse("the table `plastic` is empty".into()),
+            None => refuse!("the table `plastic` is empty"),
             Some(&[_, strain]) if strain != 0.0 => {
-                return refuse(format!("`plastic` must start at zero strain, not at {strain}"));
+                refuse!("`plastic` must start at zero strain, not at {strain}");
             }
             Some(_) => {}
         }
         for (row, &[stress, strain]) in self.plastic.iter().enumerate() {
             if !(stress > 0.0 && stress < self.young && strain.is_finite()) {
-                return refuse(format!(
-                    "`plastic` row {row}: stress = {stress} MPa violates 0 < stress < young"
-                ));
+                refuse!("`plastic` row {row}: stress = {stress} MPa violates 0 < stress < young");
             }
         }
         for (row, pair) in self.plastic.windows(2).enumerate() {
             if pair[1][1] <= pair[0][1] {
-                return refuse(format!(
-                    "`plastic` rows {row} and {}: plastic strain must increase",
-                    row + 1
-                ));
+                refuse!("`plastic` rows {row} and {}: plastic strain must increase", row + 1);
             }
         }
         Ok(())

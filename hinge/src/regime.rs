@@ -1,9 +1,8 @@
 //! How a ligament deforms as its hinge opens: by its width over the thickness of the sheet.
 
-use std::fmt;
-
 /// The two ways in which a ligament deforms. A learned energy holds in one of them.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, strum::Display)]
+#[strum(serialize_all = "kebab-case")]
 pub enum Regime {
     /// Wide ligaments buckle out of the plane and fold.
     Film,
@@ -47,14 +46,5 @@ impl Regime {
     /// The regime of a ligament, by its width over the thickness.
     pub fn of(width: f64) -> Self {
         if width <= Self::WIDEST_PLATE { Self::Plate } else { Self::Film }
-    }
-}
-
-impl fmt::Display for Regime {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        f.write_str(match self {
-            Self::Film => "film",
-            Self::Plate => "plate",
-        })
     }
 }

@@ -8,6 +8,7 @@
 //! the bottom, of the top, and of the verticals.
 
 use serde::{Deserialize, Serialize};
+use std::iter::zip;
 
 /// An element type of the window, extruded from a face of the plane mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -90,8 +91,8 @@ impl ElementKind {
             let mut j = [[0.0; 3]; 3];
             for (node, position) in nodes.iter().enumerate() {
                 let gradient = self.shape_gradient(node, at);
-                for (row, x) in std::iter::zip(&mut j, position) {
-                    std::iter::zip(row, gradient).for_each(|(entry, slope)| *entry += x * slope);
+                for (row, x) in zip(&mut j, position) {
+                    zip(row, gradient).for_each(|(entry, slope)| *entry += x * slope);
                 }
             }
             let [a, b, c] = j;

@@ -28,30 +28,24 @@
 mod element;
 mod extrusion;
 mod geo;
-mod gmsh;
 mod mesh;
 mod meshing;
 mod msh;
-mod quality;
 mod sheet_mesh;
 mod sheet_shape;
-mod svg;
 mod tier;
 mod window;
 
 pub(crate) use extrusion::{Extrusion, Levels};
+pub(crate) use mesh::{MAX_AREA_ERROR, check_elements, wrong_area};
 pub(crate) use msh::sides;
-pub(crate) use quality::{MAX_AREA_ERROR, check_elements, wrong_area};
 pub(crate) use window::{cross, dot, minus, polar_angle, unit};
 
 pub use element::ElementKind;
-pub use gmsh::{GMSH, Gmsh};
-pub use mesh::{WindowMesh, vtk_grid};
-pub use meshing::{MeshError, WindowShape};
+pub use mesh::{MeshQuality, WindowMesh, plane_mesh_svg, vtk_grid};
+pub use meshing::{GMSH, Gmsh, MeshError, WindowShape};
 pub use msh::{Boundary, PlaneMesh, read_msh};
-pub use quality::MeshQuality;
 pub use sheet_mesh::{Part, SheetMesh};
 pub use sheet_shape::{Frame, PanelShape, Panels, PlacedWindow, SheetShape};
-pub use svg::plane_mesh_svg;
 pub use tier::{Imperfection, MeshRecipe, PlaneRecipe, Structured, Tier, Unstructured};
 pub use window::{Side, Window};

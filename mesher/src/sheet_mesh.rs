@@ -4,7 +4,8 @@ use crate::{
     Extrusion, Imperfection, Levels, MAX_AREA_ERROR, Panels, PlacedWindow, PlaneMesh, SheetShape,
     Side, Window, check_elements, cross, dot, minus, unit, wrong_area,
 };
-use support::fault::Fault;
+use std::iter::zip;
+use support::{Fault, Point};
 
 /// Largest distance of a node from the arc of its window, over r_win.
 const ON_RIM: f64 = 1e-6;
@@ -57,7 +58,7 @@ impl SheetMesh {
             })
             .collect();
         let mut height = vec![0.0; plane.nodes.len()];
-        for (face, part) in std::iter::zip(&plane.faces, &parts) {
+        for (face, part) in zip(&plane.faces, &parts) {
             if let Part::Window(window) = part {
                 let window = &shape.windows[*window];
                 for node in face {
@@ -101,7 +102,7 @@ impl SheetMesh {
 
     /// The plane nodes of a part, in increasing order.
     pub fn plane_nodes(&self, part: Part) -> Vec<usize> {
-        let faces = std::iter::zip(&self.plane.faces, &self.parts);
+        let faces = zip(&self.plane.faces, &self.parts);
         let mut nodes: Vec<usize> = faces
             .filter(|(_, of)| **of == part)
             .flat_map(|(face, _)| face.iter().copied())
@@ -121,7 +122,7 @@ impl SheetMesh {
         let mut nodes = Vec::new();
         for (number, PlacedWindow { design, frame, panels, .. }) in shape.windows.iter().enumerate()
         {
-            let sides = std::iter::zip(Side::BOTH, panels).filter(|(_, (of, _))| *of == panel);
+            let sides = zip(Side::BOTH, panels).filter(|(_, (of, _))| *of == panel);
             for (side, _) in sides {
                 nodes.extend(self.plane_nodes(Part::Window(number)).into_iter().filter(|node| {
                     let local = frame.local(self.plane.nodes[*node]);
@@ -163,12 +164,12 @@ impl SheetMesh {
     }
 
     /// The corner node of a part's faces that is nearest to a point.
-    pub fn nearest(&self, part: Part, point: [f64; 2]) -> Option<usize> {
+    pub fn nearest(&self, part: Part, point: Point) -> Option<usize> {
         let distance = |node: &usize| {
             let [x, y] = minus(self.plane.nodes[*node], point);
             x.hypot(y)
         };
-        let faces = std::iter::zip(&self.plane.faces, &self.parts);
+        let faces = zip(&self.plane.faces, &self.parts);
         let corners = faces
             .filter(|(_, of)| **of == part)
             .flat_map(|(face, _)| face[..face.len() / 2].iter().copied());
@@ -178,7 +179,7 @@ impl SheetMesh {
 
 impl PlacedWindow {
     /// Height (mm) of the bump at a point of the window.
-    fn height(&self, thickness: f64, point: [f64; 2]) -> f64 {
+    fn height(&self, thickness: f64, point: Point) -> f64 {
         let [x, y] = self.frame.local(point);
         let bump = Imperfection { amplitude: self.bump, widths: Imperfection::WIDTHS };
         bump.height(&self.design, thickness, x, y)
@@ -187,7 +188,7 @@ impl PlacedWindow {
 
 impl SheetShape {
     /// The finished edge of a panel along the main cut of a window.
-    fn flank(&self, window: usize, side: Side) -> [[f64; 2]; 2] {
+    fn flank(&self, window: usize, side: Side) -> [Point; 2] {
         let [a, b] = self.windows[window].panels;
         // Edges are counted by the corner at which they begin, counter-clockwise: the flank ends at
         // the corner of A.
@@ -213,7 +214,7 @@ impl SheetShape {
         let outline = self.outline(panel);
         let next = outline.iter().cycle().skip(1);
         let mut sums = [0.0; 3];
-        for (from, to) in std::iter::zip(&outline, next) {
+        for (from, to) in zip(&outline, next) {
             let twice = cross(*from, *to);
             sums[0] += 0.5 * twice;
             (0..2).for_each(|i| sums[i + 1] += twice * (from[i] + to[i]) / 6.0);

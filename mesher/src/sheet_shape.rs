@@ -6,6 +6,7 @@
 use crate::{Side, Structured, Window};
 use hinge::HingeDesign;
 use serde::{Deserialize, Serialize};
+use support::Point;
 
 /// Ligament width over thickness up to which a ligament of a sheet bends in the plane first, and
 /// tips over later.
@@ -52,9 +53,9 @@ pub struct SheetShape {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PanelShape {
     /// Where its finished edges meet, counter-clockwise (mm).
-    pub corners: Vec<[f64; 2]>,
+    pub corners: Vec<Point>,
     /// Points at which the mesh has nodes (mm), inside of the panel or on its finished edges.
-    pub marks: Vec<[f64; 2]>,
+    pub marks: Vec<Point>,
 }
 
 /// A window in the flat sheet.
@@ -86,8 +87,8 @@ impl SheetShape {
     }
 
     /// The outline of a panel outside of its windows, counter-clockwise (mm).
-    pub fn outline(&self, panel: usize) -> Vec<[f64; 2]> {
-        let at_corner = |(corner, point): (usize, &[f64; 2])| {
+    pub fn outline(&self, panel: usize) -> Vec<Point> {
+        let at_corner = |(corner, point): (usize, &Point)| {
             let place = (panel, corner);
             let at = |window: &&PlacedWindow| window.panels.contains(&place);
             match self.windows.iter().find(at) {
@@ -102,7 +103,7 @@ impl SheetShape {
 
 impl PanelShape {
     /// The ends of the edge that begins at a corner.
-    pub(crate) fn edge(&self, corner: usize) -> [[f64; 2]; 2] {
+    pub(crate) fn edge(&self, corner: usize) -> [Point; 2] {
         [self.corners[corner], self.corners[(corner + 1) % self.corners.len()]]
     }
 
@@ -112,7 +113,7 @@ impl PanelShape {
     }
 
     /// Adds a point at which the mesh has a node, once (mm).
-    pub fn mark(&mut self, point: [f64; 2]) {
+    pub fn mark(&mut self, point: Point) {
         if !self.marks.contains(&point) {
             self.marks.push(point);
         }
@@ -121,7 +122,7 @@ impl PanelShape {
 
 impl PlacedWindow {
     /// Points of its arc on a panel, clockwise about its origin (mm).
-    fn arc(&self, side: Side) -> Vec<[f64; 2]> {
+    fn arc(&self, side: Side) -> Vec<Point> {
         let (window, radius) = (Window(&self.design), self.design.r_win);
         let points = window.panel_arc(side, radius, ARC_PIECES).into_iter().rev();
         points.map(|point| self.frame.point(point)).collect()
@@ -132,9 +133,9 @@ impl PlacedWindow {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Frame {
     /// Position of the origin (mm).
-    pub origin: [f64; 2],
+    pub origin: Point,
     /// Unit vector along the x axis.
-    pub e_x: [f64; 2],
+    pub e_x: Point,
 }
 
 impl Default for Frame {
@@ -146,13 +147,13 @@ impl Default for Frame {
 
 impl Frame {
     /// The position of the point (x, y) of the frame (mm).
-    pub fn point(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+    pub fn point(&self, [x, y]: Point) -> Point {
         let ([o_x, o_y], [c, s]) = (self.origin, self.e_x);
         [o_x + c * x - s * y, o_y + s * x + c * y]
     }
 
     /// The coordinates in the frame of a point (mm).
-    pub fn local(&self, point: [f64; 2]) -> [f64; 2] {
+    pub fn local(&self, point: Point) -> Point {
         let [c, s] = self.e_x;
         let [x, y] = [0, 1].map(|i| point[i] - self.origin[i]);
         [c * x + s * y, c * y - s * x]

@@ -6,7 +6,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::time::Duration;
 use strum::{IntoEnumIterator, VariantNames};
-use support::fault::Fault;
+use support::{Fault, fault};
 
 /// A named mesh fineness; for each regime in order of increasing CPU time.
 ///
@@ -236,7 +236,7 @@ impl Tier {
 /// The error for a name that is no tier.
 fn unknown(name: &str) -> Fault {
     let known = Tier::VARIANTS.join(", ");
-    Fault::from(format!("unknown mesh tier `{name}`; choose {known}"))
+    fault!("unknown mesh tier `{name}`; choose {known}")
 }
 
 impl MeshRecipe {

@@ -6,6 +6,7 @@
 
 use hinge::HingeDesign;
 use std::f64::consts::PI;
+use support::Point;
 
 /// The two panels of a hinge: A on the -x side of the main cut, B on the +x side.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -36,20 +37,20 @@ pub struct Window<'a>(pub &'a HingeDesign);
 
 impl Window<'_> {
     /// Unit normal of the main cut, pointing to panel B.
-    pub fn normal(&self) -> [f64; 2] {
+    pub fn normal(&self) -> Point {
         let [x, y] = self.0.main_cut();
         [-y, x]
     }
 
     /// Where a kerf face meets the hole (mm).
-    pub fn kerf_at_hole(&self, side: Side) -> [f64; 2] {
+    pub fn kerf_at_hole(&self, side: Side) -> Point {
         let half = 0.5 * self.0.kerf;
         let along = (self.0.fillet_radius().powi(2) - half * half).sqrt();
         self.on_kerf_face(side, along)
     }
 
     /// Where a kerf face meets the circle of radius `r` about the origin (mm); `r` > w_lig.
-    pub fn kerf_at_radius(&self, side: Side, r: f64) -> [f64; 2] {
+    pub fn kerf_at_radius(&self, side: Side, r: f64) -> Point {
         let start = self.on_kerf_face(side, 0.0);
         let b = dot(start, self.0.main_cut());
         let along = -b + (b * b - dot(start, start) + r * r).sqrt();
@@ -57,7 +58,7 @@ impl Window<'_> {
     }
 
     /// The point of a kerf face at the distance `along` (mm) from O along the main cut.
-    fn on_kerf_face(&self, side: Side, along: f64) -> [f64; 2] {
+    fn on_kerf_face(&self, side: Side, along: f64) -> Point {
         let (o, u, n) = (self.0.tip(), self.0.main_cut(), self.normal());
         let across = 0.5 * self.0.kerf * side.sign();
         [0, 1].map(|i| o[i] + along * u[i] + across * n[i])
@@ -79,7 +80,7 @@ impl Window<'_> {
     }
 
     /// Points at equal angles on one panel's part of the circle `radius`, counter-clockwise.
-    pub(crate) fn panel_arc(&self, side: Side, radius: f64, columns: usize) -> Vec<[f64; 2]> {
+    pub(crate) fn panel_arc(&self, side: Side, radius: f64, columns: usize) -> Vec<Point> {
         let kerf = self.kerf_at_radius(side, radius);
         let (from, to) = match side {
             Side::B => (polar_angle(kerf), 0.0),
@@ -116,12 +117,12 @@ impl Window<'_> {
 }
 
 /// Polar angle about the origin (rad), in (-pi, pi].
-pub(crate) fn polar_angle([x, y]: [f64; 2]) -> f64 {
+pub(crate) fn polar_angle([x, y]: Point) -> f64 {
     y.atan2(x)
 }
 
 /// Half of the contour integral of x dy - y dx along a straight segment.
-fn segment(from: [f64; 2], to: [f64; 2]) -> f64 {
+fn segment(from: Point, to: Point) -> f64 {
     0.5 * cross(from, to)
 }
 
@@ -131,25 +132,25 @@ fn sector(radius: f64, angle: f64) -> f64 {
 }
 
 /// The same integral along an arc about `centre`.
-fn arc(centre: [f64; 2], radius: f64, from: [f64; 2], to: [f64; 2], angle: f64) -> f64 {
+fn arc(centre: Point, radius: f64, from: Point, to: Point, angle: f64) -> f64 {
     let chord = [to[0] - from[0], to[1] - from[1]];
     sector(radius, angle) + 0.5 * cross(centre, chord)
 }
 
-pub(crate) fn minus(p: [f64; 2], q: [f64; 2]) -> [f64; 2] {
+pub(crate) fn minus(p: Point, q: Point) -> Point {
     [p[0] - q[0], p[1] - q[1]]
 }
 
-pub(crate) fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
+pub(crate) fn dot(a: Point, b: Point) -> f64 {
     a[0] * b[0] + a[1] * b[1]
 }
 
-pub(crate) fn cross(a: [f64; 2], b: [f64; 2]) -> f64 {
+pub(crate) fn cross(a: Point, b: Point) -> f64 {
     a[0] * b[1] - a[1] * b[0]
 }
 
 /// The unit vector from `p` to `q`.
-pub(crate) fn unit(p: [f64; 2], q: [f64; 2]) -> [f64; 2] {
+pub(crate) fn unit(p: Point, q: Point) -> Point {
     let [x, y] = minus(q, p);
     [x / x.hypot(y), y / x.hypot(y)]
 }

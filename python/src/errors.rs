@@ -3,6 +3,7 @@
 use design::DesignError;
 use pyo3::{create_exception, exceptions::PyException, prelude::*};
 use std::fmt::Display;
+use support::Fault;
 
 create_exception!(
     kirigami,
@@ -37,7 +38,7 @@ create_exception!(
 );
 
 /// The exception of weights that cannot be read.
-pub(crate) fn weights(error: surrogate::WeightsError) -> PyErr {
+pub(crate) fn weights(error: Fault) -> PyErr {
     WeightsError::new_err(error.to_string())
 }
 

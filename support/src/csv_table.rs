@@ -1,6 +1,6 @@
 //! Tables whose first line names the columns; see [`text_table`](crate::text_table).
 
-use crate::file_error::FileError;
+use crate::FileError;
 use crate::text_table::TextTable;
 use csv::StringRecord;
 use serde::de::DeserializeOwned;

@@ -1,49 +1,44 @@
-//! An error that no caller tells from another: it is read by a person.
+//! Errors that no caller tells from another, for people to read, and errors of files.
 
-use std::fmt;
-use std::path::Path;
+use std::fmt::Display;
+use std::io;
+use std::path::{Path, PathBuf};
 
-/// Where something is wrong (a file, line, key or job), what is wrong, and what to do. Empty texts
-/// are left out of the message. An error that a caller matches is a variant of an enum instead.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Fault {
-    /// The place, such as `supports[2].panel`.
-    pub place: String,
-    /// The mistake, with its values and units.
-    pub what: String,
-    /// The remedy, in the imperative.
-    pub remedy: String,
+/// What is wrong, after its place (a file, line, key or job) and before what to do, each behind a
+/// colon. An error that a caller matches is a variant of an enum instead.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{0}")]
+pub struct Fault(String);
+
+/// The [`Fault`] with a message, written as for [`format!`].
+#[macro_export]
+macro_rules! fault {
+    ($($message:tt)*) => {
+        $crate::Fault::from(format!($($message)*))
+    };
 }
 
-/// The fault at `place`.
-pub fn fault(
-    place: impl Into<String>,
-    what: impl Into<String>,
-    remedy: impl Into<String>,
-) -> Fault {
-    Fault { place: place.into(), what: what.into(), remedy: remedy.into() }
+/// Returns the [`Fault`] with a message, written as for [`format!`], or an error made of it.
+#[macro_export]
+macro_rules! refuse {
+    ($($message:tt)*) => {
+        return Err($crate::fault!($($message)*).into())
+    };
 }
 
 impl From<String> for Fault {
-    /// A mistake in words, without a place.
-    fn from(what: String) -> Self {
-        fault("", what, "")
-    }
-}
-
-impl From<&str> for Fault {
-    fn from(what: &str) -> Self {
-        what.to_owned().into()
+    fn from(message: String) -> Self {
+        Self(message)
     }
 }
 
 /// The fault that another error describes, for use in `map_err`.
-pub fn said(error: impl fmt::Display) -> Fault {
+pub fn said(error: impl Display) -> Fault {
     error.to_string().into()
 }
 
 /// Maps an error at a place, such as a file or a key, for use in `map_err`.
-pub fn at<E: fmt::Display>(place: impl fmt::Display) -> impl FnOnce(E) -> Fault {
+pub fn at<E: Display>(place: impl Display) -> impl FnOnce(E) -> Fault {
     move |error| format!("{place}: {error}").into()
 }
 
@@ -57,46 +52,36 @@ macro_rules! ensure {
     };
 }
 
-/// Returns the fault with a message, given as to `format!`.
-#[macro_export]
-macro_rules! refuse {
-    ($($message:tt)+) => {
-        return Err($crate::Fault::from(format!($($message)+)).into())
-    };
-}
-
 /// Maps the error of reading `path`, for use in `map_err`.
-pub fn unread<E: fmt::Display>(path: &Path) -> impl FnOnce(E) -> Fault {
-    move |error| format!("cannot read {}: {error}", path.display()).into()
+pub fn unread<E: Display>(path: &Path) -> impl FnOnce(E) -> Fault {
+    move |error| fault!("cannot read {}: {error}", path.display())
 }
 
 /// Maps the error of writing `path`, for use in `map_err`.
-pub fn unwritten<E: fmt::Display>(path: &Path) -> impl FnOnce(E) -> Fault {
-    move |error| format!("cannot write {}: {error}", path.display()).into()
+pub fn unwritten<E: Display>(path: &Path) -> impl FnOnce(E) -> Fault {
+    move |error| fault!("cannot write {}: {error}", path.display())
 }
 
-impl fmt::Display for Fault {
-    fn fmt(&self, text: &mut fmt::Formatter) -> fmt::Result {
-        let Self { place, what, remedy } = self;
-        let texts = [place, what, remedy].map(String::as_str);
-        let said = texts.into_iter().filter(|text| !text.is_empty());
-        text.write_str(&said.collect::<Vec<_>>().join(": "))
+/// A file that cannot be read, written or parsed.
+#[derive(Debug, thiserror::Error)]
+#[error("{path}: {source}", path = .path.display())]
+pub struct FileError {
+    /// The file.
+    pub path: PathBuf,
+    /// Why the operation on the file failed.
+    pub source: io::Error,
+}
+
+impl FileError {
+    /// Maps the error of an operation on `path`, for use in `map_err`.
+    pub fn at<E: Into<io::Error>>(path: &Path) -> impl FnOnce(E) -> Self {
+        let path = path.to_owned();
+        move |source| Self { path, source: source.into() }
     }
 }
 
-impl std::error::Error for Fault {}
-
-#[cfg(test)]
-mod tests {
-    use super::fault;
-
-    #[test]
-    fn empty_texts_are_left_out() {
-        let whole = fault("supports", "a sheet without supports has no equilibrium", "add one");
-        assert_eq!(
-            whole.to_string(),
-            "supports: a sheet without supports has no equilibrium: add one"
-        );
-        assert_eq!(fault("", "no rows", "").to_string(), "no rows");
+impl From<FileError> for Fault {
+    fn from(FileError { path, source }: FileError) -> Self {
+        fault!("{}: {source}", path.display())
     }
 }

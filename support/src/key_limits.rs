@@ -2,23 +2,11 @@
 //! `schemars(range(..))` of its field, and its unit in the first parentheses of the field's
 //! documentation, as in "Thickness of the sheet (mm)".
 
-use crate::fault::Fault;
+use crate::Fault;
 use schemars::{JsonSchema, schema_for};
 use serde::Serialize;
 use serde_json::Value;
 use std::fmt;
-
-/// A number outside the range of its key. The message names both and, if a factor of 1000 would
-/// correct the number, the probable one.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("{0}")]
-pub struct OutOfRange(String);
-
-impl From<OutOfRange> for Fault {
-    fn from(OutOfRange(what): OutOfRange) -> Self {
-        what.into()
-    }
-}
 
 /// The smallest and the largest admissible number; infinite without a limit.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,7 +14,7 @@ pub struct Range(f64, f64);
 
 /// Checks all numbers of a configuration against the ranges of the type `T`, which has the same
 /// keys; numbers must be finite.
-pub fn check<T: JsonSchema>(config: &impl Serialize) -> Result<(), OutOfRange> {
+pub fn check<T: JsonSchema>(config: &impl Serialize) -> Result<(), Fault> {
     let schema = schema_for!(T);
     let checker = Checker(schema.as_value());
     // A configuration that is no TOML, such as one with an integer above 2^63, was not read from a
@@ -35,8 +23,9 @@ pub fn check<T: JsonSchema>(config: &impl Serialize) -> Result<(), OutOfRange> {
     value.map_or(Ok(()), |value| checker.check(checker.0, &value, "", ""))
 }
 
-/// Checks a number whose range depends on other keys.
-pub fn within(key: &str, value: f64, [min, max]: [f64; 2], unit: &str) -> Result<(), OutOfRange> {
+/// Checks a number whose range depends on other keys. The message names the key and the range and,
+/// if a factor of 1000 would correct the number, the probable one.
+pub fn within(key: &str, value: f64, [min, max]: [f64; 2], unit: &str) -> Result<(), Fault> {
     let range = min..=max;
     if value.is_finite() && range.contains(&value) {
         return Ok(());
@@ -54,7 +43,7 @@ pub fn within(key: &str, value: f64, [min, max]: [f64; 2], unit: &str) -> Result
     let hint = meant.map_or(String::new(), |meant| format!("; did you mean {meant}{unit}?"));
     // More digits than a person reads become an exponent.
     let value = if value.abs() < 1e16 { value.to_string() } else { format!("{value:e}") };
-    Err(OutOfRange(format!("{key} = {value}{unit} violates {rule}{hint}")))
+    Err(fault!("{key} = {value}{unit} violates {rule}{hint}"))
 }
 
 /// The unit that a description states in its first parentheses; empty if there is none.
@@ -80,7 +69,7 @@ impl Checker<'_> {
         value: &toml::Value,
         key: &str,
         description: &str,
-    ) -> Result<(), OutOfRange> {
+    ) -> Result<(), Fault> {
         let description = schema["description"].as_str().unwrap_or(description);
         if let Some(name) = schema["$ref"].as_str() {
             let name = name.rsplit('/').next().unwrap_or_default();

@@ -24,11 +24,12 @@ macro_rules! add_line {
     }};
 }
 
+#[macro_use]
+mod fault;
+
 pub mod caught_panic;
 pub mod csv_table;
 pub mod document;
-pub mod fault;
-pub mod file_error;
 pub mod interpolation;
 pub mod key_limits;
 pub mod lock_file;
@@ -56,5 +57,7 @@ pub mod vtk;
 pub mod whole_file;
 pub mod worker_pool;
 
-pub use fault::{Fault, at, said, unread, unwritten};
-pub use file_error::FileError;
+pub use fault::{Fault, FileError, at, said, unread, unwritten};
+
+/// A point or vector of the plane, or a point of a curve.
+pub type Point = [f64; 2];

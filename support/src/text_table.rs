@@ -3,7 +3,7 @@
 //! most cells are numbers and fewest others are left. Lines that start with `#` are comments, and
 //! so is what follows `#` in a number.
 
-use crate::file_error::FileError;
+use crate::FileError;
 use crate::text_file;
 use std::cmp::Reverse;
 use std::path::Path;

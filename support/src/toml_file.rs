@@ -1,9 +1,9 @@
 //! Reading TOML configuration files. An unknown key is an error that names the most similar known
 //! key; an array with more elements than its type has is an error.
 
-use crate::fault::{Fault, fault};
 use crate::nearest::nearest;
 use crate::text_file;
+use crate::{Fault, unread};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::path::Path;
@@ -13,21 +13,15 @@ use toml::{Spanned, Value};
 /// A hint at decimal commas.
 const DECIMAL_POINT: &str = "the decimal sign is a point (40.5, not 40,5)";
 
-/// Why a configuration file cannot be read; the message names the file, the line and the key.
-#[derive(Debug, thiserror::Error)]
-#[error("{0}")]
-pub struct ConfigError(Fault);
-
-/// Reads a TOML file into `T`, which should deny unknown fields.
-pub fn read<T: DeserializeOwned + Serialize>(path: &Path) -> Result<T, ConfigError> {
-    let text = text_file::read(path).map_err(|error| {
-        ConfigError(fault(format!("cannot read {}", path.display()), error.to_string(), ""))
-    })?;
+/// Reads a TOML file into `T`, which should deny unknown fields. An error names the file, the line
+/// and the key.
+pub fn read<T: DeserializeOwned + Serialize>(path: &Path) -> Result<T, Fault> {
+    let text = text_file::read(path).map_err(unread(path))?;
     parse(&text, path)
 }
 
 /// Parses TOML text; errors name `path`.
-pub fn parse<T: DeserializeOwned + Serialize>(text: &str, path: &Path) -> Result<T, ConfigError> {
+pub fn parse<T: DeserializeOwned + Serialize>(text: &str, path: &Path) -> Result<T, Fault> {
     let located = |message: &str, start: usize| {
         let line = 1 + text[..start].matches('\n').count();
         let what = match unknown_field(message) {
@@ -38,7 +32,7 @@ pub fn parse<T: DeserializeOwned + Serialize>(text: &str, path: &Path) -> Result
             }
             None => plain(message, text.lines().nth(line - 1).unwrap_or_default()),
         };
-        ConfigError(fault(format!("{}:{line}", path.display()), what, ""))
+        fault!("{}:{line}: {what}", path.display())
     };
     let refused = |error: toml::de::Error| {
         let start = error.span().map_or(0, |span| span.start);

@@ -44,7 +44,7 @@ fn prepare(bencher: divan::Bencher) {
 #[divan::bench]
 fn damage(bencher: divan::Bencher) {
     let (surrogate, designs, deformations) = case();
-    bencher.bench(|| surrogate.damage(&designs, &deformations));
+    bencher.bench(|| surrogate.damage(&designs, &deformations, true));
 }
 
 fn medium() -> Surrogate {

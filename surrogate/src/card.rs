@@ -4,7 +4,7 @@ use crate::features::{LOG_WIDTH, Standardisation, feature_names};
 use crate::network::{finite, other_shape};
 use hinge::{HingeConstants, TrainingDomain};
 use serde::{Deserialize, Deserializer, Serialize};
-use support::fault::Fault;
+use support::{Fault, refuse};
 
 /// Format version of the weight file and its card; no other version is read.
 pub const FORMAT_VERSION: u32 = 9;
@@ -264,8 +264,7 @@ impl Card {
             ("features", self.features.join(", "), names.join(", ")),
         ] {
             if found != expected {
-                let what = format!("the {key} of the card are {found}, expected {expected}");
-                return Err(Fault::from(what));
+                refuse!("the {key} of the card are {found}, expected {expected}");
             }
         }
         let damages = self.damage_scales().into_iter();
@@ -286,8 +285,7 @@ impl Card {
         let deviations = deviations.map(|(name, std)| (format!("feat_std of {name}"), std));
         for (name, value) in scales.chain(deviations) {
             if !(value > 0.0 && value.is_finite()) {
-                let what = format!("`{name}` = {value} violates 0 < {name} < infinity");
-                return Err(Fault::from(what));
+                refuse!("`{name}` = {value} violates 0 < {name} < infinity");
             }
         }
         finite("feat_mean", mean)

@@ -11,13 +11,14 @@
 //! where lambda is the adjoint of a unit, seeded by r. chi(xi(0, g)) depends on the features of the
 //! design, so dW/dg = 2 W_s (J - J0)' r, and d2W/dxi dg is reduced by 2 W_s J' J0.
 
-use crate::features::{FEATURES, features, pull_back};
-use crate::hinge_energy::{DEFORMATION_FEATURES, HingeEnergy, Order};
+use crate::features::{DEFORMATION_FEATURES, FEATURES, HingeEnergy, Order, features, pull_back};
 use crate::mlp_kernels::{Passes, chunk_size, packed_index, packed_len};
 use crate::network::Network;
 use crate::reference_ligament;
 use faer::Mat;
 use hinge::{HingeDeformation, HingeDesign, HingeGradient, NetLigament};
+use std::iter::zip;
+
 use rayon::prelude::*;
 use std::cell::RefCell;
 use std::ops::Range;
@@ -42,7 +43,7 @@ impl Prepared {
     pub(crate) fn new(chi: &Network, designs: &[HingeDesign], reference: f64) -> Self {
         let ligaments: Vec<_> =
             designs.iter().map(|design| NetLigament::new(design, reference)).collect();
-        let undeformed: Vec<_> = std::iter::zip(&ligaments, designs)
+        let undeformed: Vec<_> = zip(&ligaments, designs)
             .map(|(ligament, design)| {
                 features(&ligament.design(design), &HingeDeformation::default())
             })
@@ -94,7 +95,7 @@ pub(crate) fn evaluate(
         let first = chunk * size;
         let chunk = first..first + deformations.len();
         let ligaments = &prepared.ligaments[chunk.clone()];
-        let seen: Vec<_> = std::iter::zip(&prepared.designs[chunk], deformations)
+        let seen: Vec<_> = zip(&prepared.designs[chunk], deformations)
             .zip(ligaments)
             .map(|((design, deformation), ligament)| {
                 reference_ligament::seen(ligament, design, deformation)
@@ -102,7 +103,7 @@ pub(crate) fn evaluate(
             .collect();
         KERNEL.with_borrow_mut(|kernel| {
             kernel.run(chi, prepared, first, &seen, order);
-            let hinges = std::iter::zip(ligaments, &seen).enumerate();
+            let hinges = zip(ligaments, &seen).enumerate();
             hinges
                 .map(|(hinge, (ligament, (design, deformation)))| {
                     let energy = kernel.energy(hinge, design, deformation, energy_scale, order);

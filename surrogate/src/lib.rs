@@ -30,7 +30,7 @@
 //! let [_, _, moment] = energies[999].forces; // N mm
 //! assert_eq!(energies[0].w, 0.0);
 //! assert!(moment.is_finite());
-//! # Ok::<_, surrogate::WeightsError>(())
+//! # Ok::<_, support::Fault>(())
 //! ```
 
 #![cfg_attr(not(test), warn(unreachable_pub))]
@@ -40,7 +40,6 @@ mod damage;
 mod energy;
 mod ensemble;
 mod features;
-mod hinge_energy;
 mod mlp_kernels;
 mod model;
 mod network;
@@ -56,10 +55,8 @@ pub use card::{
 pub use damage::HingeDamage;
 pub use energy::Prepared;
 pub use ensemble::mean_and_variance;
-pub use features::{FEATURE_NAMES, Standardisation, feature_names, features};
-pub use hinge_energy::{HingeEnergy, Order};
+pub use features::{FEATURE_NAMES, HingeEnergy, Order, Standardisation, feature_names, features};
 pub use model::{Layers, Surrogate};
 pub use network::{Layer, Network, Tensor};
 pub use springback::{Springback, SpringbackErrors};
 pub use tanh::tanh_in_place;
-pub use weights::WeightsError;

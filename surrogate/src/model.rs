@@ -3,13 +3,13 @@
 use crate::card::{Card, ErrorBin, SpotCheck, TestErrors};
 use crate::damage::{self, HingeDamage};
 use crate::energy::{self, Prepared};
-use crate::hinge_energy::{HingeEnergy, Order};
+use crate::features::{HingeEnergy, Order};
 use crate::network::{Layer, Network, missing};
 use crate::reference_ligament;
 use hinge::{
     HingeDeformation, HingeDesign, HingeSample, NetLigament, Regime, SheetMaterial, TrainingDomain,
 };
-use support::fault::Fault;
+use support::Fault;
 
 /// The networks of (14), with the card that contains their scaling and provenance.
 #[derive(Clone, Debug)]
@@ -207,31 +207,6 @@ impl Surrogate {
         energy::evaluate(&self.chi, self.energy_scale(), prepared, deformations, order)
     }
 
-    /// D and D_peak of (14) and their gradients, for each hinge.
-    ///
-    /// # Panics
-    /// If the numbers of designs and of deformations differ.
-    pub fn damage(
-        &self,
-        designs: &[HingeDesign],
-        deformations: &[HingeDeformation],
-    ) -> Vec<HingeDamage> {
-        self.damages(designs, deformations, true)
-    }
-
-    /// D and D_peak of (14) for each hinge, without gradients (they are zero): only the forward
-    /// pass is evaluated.
-    ///
-    /// # Panics
-    /// If the numbers of designs and of deformations differ.
-    pub fn damage_values(
-        &self,
-        designs: &[HingeDesign],
-        deformations: &[HingeDeformation],
-    ) -> Vec<HingeDamage> {
-        self.damages(designs, deformations, false)
-    }
-
     /// The hinge deformation with W and the forces (14), D and D_peak, for each hinge. The other
     /// quantities of the samples are zero.
     ///
@@ -243,7 +218,7 @@ impl Surrogate {
         deformations: &[HingeDeformation],
     ) -> Vec<HingeSample> {
         let energies = self.evaluate(&self.prepare(designs), deformations, Order::Forces);
-        let damages = self.damage_values(designs, deformations);
+        let damages = self.damage(designs, deformations, false);
         (deformations.iter().zip(energies).zip(damages))
             .map(|((deformation, energy), damage)| {
                 let [a, s, theta] = deformation.to_array();
@@ -264,7 +239,12 @@ impl Surrogate {
             .collect()
     }
 
-    fn damages(
+    /// D and D_peak of (14) for each hinge, with their gradients or only by a forward pass: the
+    /// gradients are zero then.
+    ///
+    /// # Panics
+    /// If the numbers of designs and of deformations differ.
+    pub fn damage(
         &self,
         designs: &[HingeDesign],
         deformations: &[HingeDeformation],

@@ -2,7 +2,7 @@
 
 use crate::features::{FEATURES, Standardisation};
 use faer::Mat;
-use support::fault::Fault;
+use support::{Fault, fault, refuse};
 
 /// An array of a weight file, in row-major order.
 #[derive(Clone, Debug, PartialEq)]
@@ -109,12 +109,11 @@ impl Affine {
 }
 
 pub(crate) fn missing(tensor: &str) -> Fault {
-    Fault::from(format!("tensor `{tensor}` is missing; train or export the weights again"))
+    fault!("tensor `{tensor}` is missing; train or export the weights again")
 }
 
 pub(crate) fn other_shape(tensor: &str, expected: &str, found: &[usize]) -> Fault {
-    let what = format!("tensor `{tensor}` has the shape {found:?}, expected {expected}");
-    Fault::from(what)
+    fault!("tensor `{tensor}` has the shape {found:?}, expected {expected}")
 }
 
 /// Rejects a value that is not finite.
@@ -122,9 +121,10 @@ pub(crate) fn finite(tensor: &str, values: &[f64]) -> Result<(), Fault> {
     let Some(index) = values.iter().position(|value| !value.is_finite()) else {
         return Ok(());
     };
-    let value = values[index];
-    let what = format!("tensor `{tensor}` contains {value} at index {index}");
-    Err(Fault::from(what + "; every weight must be finite"))
+    refuse!(
+        "tensor `{tensor}` contains {} at index {index}; every weight must be finite",
+        values[index]
+    )
 }
 
 impl Tensor {

@@ -2,7 +2,7 @@
 //! hinge with the hole of reference and the same net ligament ([`NetLigament`]), with the
 //! derivatives of this map.
 
-use crate::hinge_energy::{HingeEnergy, Order};
+use crate::features::{HingeEnergy, Order};
 use hinge::{DesignGradient, HingeDeformation, HingeDesign, HingeGradient, NetLigament};
 use std::array::from_fn;
 

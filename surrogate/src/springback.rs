@@ -18,9 +18,7 @@ use serde::{Deserialize, Serialize};
 use std::array::from_fn;
 use std::f64::consts::FRAC_PI_2;
 use std::path::Path;
-use support::fault::{Fault, unread};
-use support::regular_file;
-use support::sealed_json;
+use support::{Fault, fault, regular_file, sealed_json, unread};
 
 /// The even and the odd terms: products of two of the factors (1, ln w_lig, eta_a, theta, alpha -
 /// 90 deg, eta_s), of which the last two change sign in the mirrored hinge.
@@ -130,10 +128,8 @@ impl Springback {
     /// Reads a law from its file.
     pub fn load(path: &Path) -> Result<Self, Fault> {
         let bytes = regular_file::read(path).map_err(unread(path))?;
-        sealed_json::from_slice(&bytes).map_err(|error| {
-            let what = format!("{} is not a law of released hinges: {error}", path.display());
-            Fault::from(what)
-        })
+        sealed_json::from_slice(&bytes)
+            .map_err(|error| fault!("{} is not a law of released hinges: {error}", path.display()))
     }
 
     /// The factors of the terms.

@@ -22,17 +22,11 @@ use std::collections::BTreeMap;
 use std::fmt::Display;
 use std::io;
 use std::path::{Path, PathBuf};
-use support::fault::{Fault, unread, unwritten};
-use support::{regular_file, sealed_json, whole_file};
-
-/// Why a surrogate could not be read or written.
-#[derive(Debug, thiserror::Error)]
-#[error(transparent)]
-pub struct WeightsError(#[from] Fault);
+use support::{Fault, fault, refuse, regular_file, sealed_json, unread, unwritten, whole_file};
 
 impl Surrogate {
     /// Reads `X.safetensors` and its card `X.json`.
-    pub fn load(weights: &Path) -> Result<Self, WeightsError> {
+    pub fn load(weights: &Path) -> Result<Self, Fault> {
         refuse_database(weights)?;
         let bytes = regular_file::read(weights).map_err(unread(weights))?;
         let mut tensors = read_tensors(weights, &bytes)?;
@@ -40,17 +34,17 @@ impl Surrogate {
         let expected = card.weights_hash.take().unwrap_or_default();
         let found = blake3::hash(&bytes).to_hex().to_string();
         if found != expected {
-            let what = format!(
-                "is not the file that its card describes (BLAKE3 {found}, not {expected}): it is \
-                 damaged, or the card is of another training; copy the two files together"
+            refuse!(
+                "{} is not the file that its card describes (BLAKE3 {found}, not {expected}): it is damaged, or the card is of another \
+     training; copy the two files together",
+                weights.display()
             );
-            return Err(other_file(weights, what).into());
         }
-        Ok(from_tensors(&mut tensors, card).map_err(at(weights))?)
+        from_tensors(&mut tensors, card).map_err(|fault| fault!("{}: {fault}", weights.display()))
     }
 
     /// Writes `X.safetensors` and its card `X.json`, each atomically.
-    pub fn save(&self, weights: &Path) -> Result<(), WeightsError> {
+    pub fn save(&self, weights: &Path) -> Result<(), Fault> {
         let mut tensors: Vec<(String, Tensor)> = Vec::new();
         let Layers { chi, chi_d, chi_p } = self.layers();
         let networks = [("chi", chi), ("chi_d", chi_d)];
@@ -79,7 +73,7 @@ impl Surrogate {
         let mut card = sealed_json::to_vec(&stamped).map_err(|error| no_card(&path, error))?;
         card.push(b'\n');
         whole_file::write(weights, &file).map_err(unwritten(weights))?;
-        Ok(whole_file::write(&path, &card).map_err(unwritten(&path))?)
+        whole_file::write(&path, &card).map_err(unwritten(&path))
     }
 }
 
@@ -94,22 +88,21 @@ fn from_tensors(tensors: &mut BTreeMap<String, Tensor>, card: Card) -> Result<Su
             return Err(other_shape(tensor, &format!("{:?}", expected.shape), &found.shape));
         }
         if found.values != expected.values {
-            let what = format!(
+            refuse!(
                 "`{tensor}` differs from the value in the card; the two files are from different \
                  trainings, so copy both from the same place"
             );
-            return Err(Fault::from(what));
         }
     }
     if let Some((tensor, _)) = tensors.pop_first() {
-        return Err(Fault::from(format!("tensor `{tensor}` is not part of a known network")));
+        refuse!("tensor `{tensor}` is not part of a known network");
     }
     Surrogate::from_parts(Layers { chi, chi_d, chi_p }, card)
 }
 
 impl Card {
     /// Reads the card of `X.safetensors`, `X.json`, without the weights.
-    pub fn of(weights: &Path) -> Result<Self, WeightsError> {
+    pub fn of(weights: &Path) -> Result<Self, Fault> {
         #[derive(serde::Deserialize)]
         struct Version {
             format_version: u64,
@@ -117,24 +110,23 @@ impl Card {
         refuse_database(weights)?;
         let path = &card_path(weights);
         let text = regular_file::read(path).map_err(|error| match error.kind() {
-            io::ErrorKind::NotFound => {
-                let card = path.display();
-                let what =
-                    format!("has no card: {card} is missing; copy both files from the same place");
-                other_file(weights, what)
-            }
+            io::ErrorKind::NotFound => fault!(
+                "{} has no card: {} is missing; copy both files from the same place",
+                weights.display(),
+                path.display()
+            ),
             _ => unread(path)(error),
         })?;
         let Version { format_version } =
             serde_json::from_slice(&text).map_err(|error| no_card(path, error))?;
         if format_version != u64::from(FORMAT_VERSION) {
-            let what = format!(
-                "has the format version {format_version}, but this program reads only version \
-                 {FORMAT_VERSION}: train the weights again, or use the program that wrote them"
+            refuse!(
+                "{} has the format version {format_version}, but this program reads only version {FORMAT_VERSION}: train the weights \
+     again, or use the program that wrote them",
+                path.display()
             );
-            return Err(other_file(path, what).into());
         }
-        Ok(sealed_json::from_slice(&text).map_err(|error| no_card(path, error))?)
+        sealed_json::from_slice(&text).map_err(|error| no_card(path, error))
     }
 }
 
@@ -142,29 +134,18 @@ fn refuse_database(weights: &Path) -> Result<(), Fault> {
     if weights.extension().is_none_or(|kind| kind != "parquet") {
         return Ok(());
     }
-    Err(other_file(
-        weights,
-        "is a database (Parquet), but weights (.safetensors) are expected; `kirigami train` makes \
-         weights from a database",
+    Err(fault!(
+        "{} is a database (Parquet), but weights (.safetensors) are expected; `kirigami train` makes weights from a database",
+        weights.display()
     ))
 }
 
-/// The fault of a file: its path is the subject of the sentence `what`.
-fn other_file(path: &Path, what: impl Display) -> Fault {
-    Fault::from(format!("{} {what}", path.display()))
-}
-
 fn no_card(path: &Path, error: impl Display) -> Fault {
-    other_file(path, format!("is not a card of a surrogate: {error}"))
+    fault!("{} is not a card of a surrogate: {error}", path.display())
 }
 
 fn malformed(path: &Path, error: impl Display) -> Fault {
-    other_file(path, format!("is not a safetensors file: {error}"))
-}
-
-/// Maps a fault in the contents of `path`, for use in `map_err`.
-fn at(path: &Path) -> impl FnOnce(Fault) -> Fault {
-    move |fault| Fault { place: path.display().to_string(), ..fault }
+    fault!("{} is not a safetensors file: {error}", path.display())
 }
 
 fn card_path(weights: &Path) -> PathBuf {
@@ -176,11 +157,11 @@ fn read_tensors(path: &Path, bytes: &[u8]) -> Result<BTreeMap<String, Tensor>, F
     file.iter()
         .map(|(name, view)| match to_tensor(&view) {
             Some(tensor) => Ok((name.to_owned(), tensor)),
-            None => {
-                let found = view.dtype();
-                let what = format!("tensor `{name}` is {found:?}, expected F64 or F32");
-                Err(at(path)(Fault::from(what)))
-            }
+            None => Err(fault!(
+                "{}: tensor `{name}` is {:?}, expected F64 or F32",
+                path.display(),
+                view.dtype()
+            )),
         })
         .collect()
 }

@@ -48,7 +48,7 @@ fn energy_and_damage_agree_with_the_reference() {
     let (designs, deformations) = hinges(&states);
     let prepared = surrogate.prepare(&designs);
     let energies = surrogate.evaluate(&prepared, &deformations, Order::Design);
-    let damages = surrogate.damage(&designs, &deformations);
+    let damages = surrogate.damage(&designs, &deformations, true);
     assert_eq!((states.len(), energies.len(), damages.len()), (50, 50, 50));
     for ((state, energy), damage) in states.iter().zip(&energies).zip(&damages) {
         let mixed = energy.mixed.map(|by| [by.w_lig, by.alpha]);
@@ -198,7 +198,7 @@ fn derivatives_agree(surrogate: &Surrogate, fillet_ratio: f64, directions: usize
     }
     let prepared = surrogate.prepare(&designs);
     let exact = surrogate.evaluate(&prepared, &deformations, Order::Design);
-    let damages = surrogate.damage(&designs, &deformations);
+    let damages = surrogate.damage(&designs, &deformations, true);
     for direction in 0..directions {
         // rho_f varies by tenths, the others by one.
         let unit = if direction == 5 { 0.1 } else { 1.0 };
@@ -220,7 +220,7 @@ fn derivatives_agree(surrogate: &Surrogate, fillet_ratio: f64, directions: usize
         let values = differences(
             (&designs, &deformations),
             |designs, deformations| {
-                let damages = surrogate.damage(designs, deformations).into_iter();
+                let damages = surrogate.damage(designs, deformations, false).into_iter();
                 damages.flat_map(|it| [it.d, it.d_peak.unwrap()]).collect()
             },
             direction,
@@ -245,7 +245,7 @@ fn a_head_for_d_peak_does_not_change_d() {
     let (mut layers, mut card) = (two.layers(), two.card().clone());
     (layers.chi_p, card.peak_scale) = (None, None);
     let one = Surrogate::from_parts(layers, card).unwrap();
-    let [one, two] = [one, two].map(|it| it.damage(&designs, &deformations));
+    let [one, two] = [one, two].map(|it| it.damage(&designs, &deformations, true));
     for (one, two) in one.iter().zip(&two) {
         assert_close("D", &[two.d], &[one.d], 1e-14);
         assert_close("dD", &two.gradient.to_array(), &one.gradient.to_array(), 1e-14);
@@ -267,7 +267,7 @@ fn sharpness_is_equivalent_to_a_scaled_head_and_damage_scale() {
         tensor.values.iter_mut().for_each(|value| *value *= beta);
     }
     let plain = Surrogate::from_parts(layers, card).unwrap();
-    let [sharp, plain] = [sharp, plain].map(|it| it.damage(&designs, &deformations));
+    let [sharp, plain] = [sharp, plain].map(|it| it.damage(&designs, &deformations, true));
     for (sharp, plain) in sharp.iter().zip(&plain) {
         assert_close("D", &[sharp.d], &[plain.d], 1e-15);
         assert_close("dD", &sharp.gradient.to_array(), &plain.gradient.to_array(), 1e-14);
@@ -309,7 +309,7 @@ fn weights_of_another_thickness_follow_similarity() {
     let thin_deformations: Vec<_> = deformations.iter().map(|it| it.scaled(FACTOR)).collect();
     let evaluate = |of: &Surrogate, designs: &[HingeDesign], states: &[HingeDeformation]| {
         let energies = of.evaluate(&of.prepare(designs), states, Order::Design);
-        (energies, of.damage(designs, states))
+        (energies, of.damage(designs, states, true))
     };
     let (energies, damages) = evaluate(&surrogate, &designs, &deformations);
     let (thin_energies, thin_damages) = evaluate(&thin, &thin_designs, &thin_deformations);

@@ -1,16 +1,16 @@
 //! Rows of a record that are not a monotone loading: unloading loops, rows after the break,
 //! repeated and shaking strains.
 
-use crate::isotonic::pools;
 use crate::record::{Cause, RecordRow};
-use crate::regression::mean;
+use crate::regression::{mean, pools};
+use support::Point;
 use support::statistics::median;
 
 /// The monotone part of a record.
 #[derive(Clone, Debug)]
 pub(super) struct Cleaned {
     /// [strain, stress (MPa)] with increasing strain.
-    pub curve: Vec<[f64; 2]>,
+    pub curve: Vec<Point>,
     /// Number of rows that were averaged with their neighbours, because their strain does not
     /// increase.
     pub averaged: usize,
@@ -42,9 +42,9 @@ pub(super) fn cleaned(rows: &mut [RecordRow]) -> Result<Cleaned, u64> {
     let mut kept: Vec<&mut RecordRow> = rows.iter_mut().filter(|row| row.cause.is_none()).collect();
     let end = break_of(&kept.iter().map(|row| row.stress).collect::<Vec<_>>());
     kept.drain(end..).for_each(|row| row.cause = Some(Cause::Broken));
-    let kept: Vec<[f64; 2]> = kept.iter().map(|row| [row.strain, row.stress]).collect();
+    let kept: Vec<Point> = kept.iter().map(|row| [row.strain, row.stress]).collect();
     let pools = pools(kept.iter().map(|row| row[0]), true).into_iter();
-    let curve: Vec<[f64; 2]> = pools.map(|pool| mean(&kept[pool])).collect();
+    let curve: Vec<Point> = pools.map(|pool| mean(&kept[pool])).collect();
     Ok(Cleaned { averaged: kept.len() - curve.len(), curve, noise })
 }
 

@@ -1,15 +1,16 @@
 //! The law of a material from its specimens: mean modulus, mean hardening curve, fracture strain,
 //! and the table of the finite elements.
 
-use crate::cold_drawing::{ColdDrawing, beyond_maximum_force};
 use crate::landmarks::{Draw, End};
-use crate::record::{Cause, Record, RecordOptions};
-use crate::regression::interpolated;
-use crate::specimen::{Specimen, SpecimenOptions};
-use crate::thinning::thinned;
+use crate::local_curve::{ColdDrawing, beyond_maximum_force};
+use crate::record::{Record, RecordOptions};
+use crate::regression::{interpolated, thinned};
+use crate::specimen::SpecimenOptions;
+use crate::{Cause, ReadColumn, Specimen};
+use hinge::SheetMaterial;
 use serde::Serialize;
 use std::path::PathBuf;
-use support::fault::Fault;
+use support::{Fault, Point, fault, refuse};
 
 /// What is known about a material besides the records of its specimens.
 #[derive(Clone, Copy, Debug)]
@@ -39,9 +40,9 @@ pub struct Statistic {
 pub enum Origin {
     /// From rows at which the strain is uniform.
     Measured,
-    /// In the running neck, from the work of the machine; see `cold_drawing`.
+    /// In the running neck, from the work of the machine; see `local_curve`.
     Drawn,
-    /// Beyond the maximum force, by Considere's condition; see `cold_drawing`.
+    /// Beyond the maximum force, by Considere's condition; see `local_curve`.
     Extrapolated,
 }
 
@@ -181,7 +182,7 @@ impl MaterialFit {
                 beyond_maximum_force([end.stress, end.strain], fracture_strain, young.mean);
             curve.extend(marked(&[[stress, fracture_strain]], Origin::Extrapolated));
         }
-        let rows: Vec<[f64; 2]> = curve.iter().map(|row| [row.stress, row.strain]).collect();
+        let rows: Vec<Point> = curve.iter().map(|row| [row.stress, row.strain]).collect();
         let (kept, table_deviation) = thinned(&rows, options.rows);
         let mut table: Vec<HardeningRow> = kept.into_iter().map(|row| curve[row]).collect();
         for row in &mut table {
@@ -219,11 +220,11 @@ fn draws(specimens: &[Specimen]) -> Result<Vec<Draw>, Fault> {
         let these = specimens.iter().filter(|specimen| specimen.draw.is_some() == draw);
         these.map(|specimen| specimen.path.display().to_string()).collect::<Vec<_>>().join(", ")
     };
-    Err(Fault::from(format!(
+    Err(fault!(
         "{} have a draw plateau, {} have none: fit them apart, or leave out specimens that broke early",
         names(true),
         names(false)
-    )))
+    ))
 }
 
 /// The mean hardening curve, and the true stress to which the upper yield is cut, if it is. `draw`
@@ -233,7 +234,7 @@ fn hardening(
     young: f64,
     draw: Option<(Statistic, Statistic)>,
 ) -> Result<(Vec<HardeningRow>, Option<f64>), Fault> {
-    let mean = |part: fn(&Specimen) -> &[[f64; 2]]| {
+    let mean = |part: fn(&Specimen) -> &[Point]| {
         mean_curve(&specimens.iter().map(part).collect::<Vec<_>>())
     };
     let mut uniform = mean(|specimen| &specimen.before);
@@ -242,11 +243,9 @@ fn hardening(
     };
     let top = uniform[uniform.len() - 1];
     let drawing = ColdDrawing::new(top, plateau.mean, ratio.mean, young).ok_or_else(|| {
-        Fault::from(format!(
-            "the natural draw ratio {:.3} is not beyond the upper yield at the plastic strain {:.3}: check --draw-ratio, \
+        fault!("the natural draw ratio {:.3} is not beyond the upper yield at the plastic strain {:.3}: check --draw-ratio, \
              the initial section over the section of the drawn neck",
-            ratio.mean, top[1]
-        ))
+            ratio.mean, top[1])
     })?;
     let yields = drawing.yields_at();
     uniform.iter_mut().for_each(|row| row[0] = row[0].min(yields));
@@ -264,8 +263,8 @@ fn hardening(
 ///
 /// The stress at zero is the mean. From there the mean increment of the curves that reach an
 /// interval is added, so that a specimen that breaks early leaves no jump.
-fn mean_curve(curves: &[&[[f64; 2]]]) -> Vec<[f64; 2]> {
-    let length = |curve: &[[f64; 2]]| curve[curve.len() - 1][1] - curve[0][1];
+fn mean_curve(curves: &[&[Point]]) -> Vec<Point> {
+    let length = |curve: &[Point]| curve[curve.len() - 1][1] - curve[0][1];
     let end = Statistic::new(curves.iter().map(|curve| length(curve))).mean;
     let mut stress = Statistic::new(curves.iter().map(|curve| curve[0][0])).mean;
     let mut rows = vec![[stress, 0.0]];
@@ -273,7 +272,7 @@ fn mean_curve(curves: &[&[[f64; 2]]]) -> Vec<[f64; 2]> {
         let [before, strain] =
             [interval - 1, interval].map(|index| end * (index as f64 / INTERVALS as f64).powi(2));
         if strain > before {
-            let at = |curve: &[[f64; 2]], strain| interpolated(curve, 0, curve[0][1] + strain);
+            let at = |curve: &[Point], strain| interpolated(curve, 0, curve[0][1] + strain);
             let reached = curves.iter().filter(|curve| length(curve) >= before);
             let increments = reached.map(|curve| at(curve, strain) - at(curve, before));
             stress += Statistic::new(increments).mean;
@@ -291,10 +290,10 @@ fn fracture(
 ) -> Result<(f64, Option<f64>, FractureSource), Fault> {
     if let Some(strain) = given {
         if strain < end {
-            return Err(Fault::from(format!(
+            refuse!(
                 "--fracture-strain {strain} is less than the plastic strain {end:.4} that the specimens reach on \
                  average: it is ln(A0 / A), from the section A of the broken specimen"
-            )));
+            );
         }
         return Ok((strain, None, FractureSource::Given));
     }
@@ -311,10 +310,10 @@ fn fracture(
     let reached = |it: &Specimen| it.after.last().or(it.before.last()).map(|row| row[1]);
     let scatter = Statistic::new(specimens.iter().filter_map(reached)).deviation;
     if let Some(scatter) = scatter.filter(|scatter| *scatter > end) {
-        return Err(Fault::from(format!(
+        refuse!(
             "the specimens have a fracture strain of {end:.4} ± {scatter:.4}, which is none: give --fracture-strain, or \
              leave out specimens that broke early"
-        )));
+        );
     }
     Ok((end, scatter, source))
 }
@@ -324,7 +323,106 @@ fn rounded(value: f64, digits: i32) -> f64 {
     (value * unit).round() / unit
 }
 
-fn marked(rows: &[[f64; 2]], origin: Origin) -> Vec<HardeningRow> {
-    let row = |&[stress, strain]: &[f64; 2]| HardeningRow { stress, strain, origin };
+fn marked(rows: &[Point], origin: Origin) -> Vec<HardeningRow> {
+    let row = |&[stress, strain]: &Point| HardeningRow { stress, strain, origin };
     rows.iter().map(row).collect()
+}
+
+// The material file of a fit, with its provenance as comments.
+
+impl MaterialFit {
+    /// The material of the fit, with name, thickness, Poisson's ratio and density of `known`, which
+    /// a tensile test does not measure. The error names a value that no sheet has.
+    pub fn material(&self, known: SheetMaterial) -> Result<SheetMaterial, Fault> {
+        let material = SheetMaterial {
+            young: self.young.mean,
+            fracture_strain: self.fracture_strain,
+            plastic: self.table.iter().map(|row| [row.stress, row.strain]).collect(),
+            stress_deviation: self.stress_deviation(),
+            ..known
+        };
+        material.validate()?;
+        Ok(material)
+    }
+}
+
+/// TOML text of the fitted material, with its provenance as comments.
+pub fn material_file(fit: &MaterialFit, material: &SheetMaterial, poisson_assumed: bool) -> String {
+    let SheetMaterial { thickness, young, poisson, density_kg_m3, fracture_strain, .. } = material;
+    let name = printable(&material.name);
+    let rows = fit.table.iter().map(|row| {
+        let origin = match row.origin {
+            Origin::Measured => "",
+            Origin::Drawn => "  # in the neck: equal work",
+            Origin::Extrapolated => "  # beyond the maximum force: Considere",
+        };
+        format!("    [{:?}, {:?}],{origin}\n", row.stress, row.strain)
+    });
+    let deviation = material.stress_deviation.map(|deviation| {
+        format!("\nstress_deviation = {deviation:?}  # relative standard deviation of the stress over the specimens\n")
+    });
+    format!(
+        "# {name}: the law of tensile tests, by `kirigami material fit`.\n{}{}\
+         name = \"{}\"\n\n\
+         thickness = {thickness:?}  # mm\n\
+         young = {young:?}  # MPa; {}{}\n\
+         poisson = {poisson:?}{}\n\
+         density_kg_m3 = {density_kg_m3:?}  # kg/m^3\n\
+         fracture_strain = {fracture_strain:?}  # true plastic strain; {}\n\n\
+         # Rows [true stress (MPa), true plastic strain]; constant stress after the last row. They deviate by at most\n\
+         # {:.2} % from the mean curve.\nplastic = [\n{}]\n{}",
+        fit.specimens.iter().map(provenance).collect::<String>(),
+        landmarks(fit),
+        name.replace('\\', "\\\\").replace('"', "\\\""),
+        if fit.young_given { "given" } else { "measured" },
+        scatter(&fit.young, 0),
+        if poisson_assumed { "  # assumed" } else { "" },
+        fit.fracture_source.words(),
+        100.0 * fit.table_deviation,
+        rows.collect::<String>(),
+        deviation.unwrap_or_default()
+    )
+}
+
+/// The file of a specimen, what was read from it and what was dropped.
+fn provenance(specimen: &Specimen) -> String {
+    let name = specimen.path.file_name().unwrap_or_default().to_string_lossy();
+    let [toe, unloading, broken] =
+        [Cause::Toe, Cause::Unloading, Cause::Broken].map(|cause| specimen.dropped_for(cause));
+    let [from, to] = specimen.linear.strain.map(|strain| 100.0 * strain);
+    format!(
+        "# {} (blake3 {}): {}.\n#   {} rows, not used: {toe} in the toe, {unloading} of unloading, {broken} after the break.\n\
+         #   Toe {:.3} %, linear from {from:.3} to {to:.3} % with {:.0} MPa.\n",
+        printable(&name),
+        specimen.hash,
+        printable(&specimen.read_as.each_ref().map(ReadColumn::to_string).join(", ")),
+        specimen.rows,
+        100.0 * specimen.toe,
+        specimen.linear.young
+    )
+}
+
+/// Yield and draw with their scatter.
+fn landmarks(fit: &MaterialFit) -> String {
+    let all = [
+        ("# Rp0.2", Some(&fit.offset_yield), " MPa", 2),
+        (", upper yield", fit.upper_yield.as_ref(), " MPa", 2),
+        (", draw plateau", fit.plateau.as_ref(), " MPa", 2),
+        (", natural draw ratio", fit.draw_ratio.as_ref(), "", 3),
+    ];
+    let known = all.into_iter().filter_map(|(name, value, unit, digits)| {
+        let value = value?;
+        Some(format!("{name} {:.digits$}{unit}{}", value.mean, scatter(value, digits)))
+    });
+    known.collect::<String>() + "; +- is the standard deviation.\n"
+}
+
+/// " +- 1.2", or nothing for one specimen.
+fn scatter(of: &Statistic, digits: usize) -> String {
+    of.deviation.map_or(String::new(), |deviation| format!(" +- {deviation:.digits$}"))
+}
+
+/// A text without the characters that would end a comment.
+fn printable(text: &str) -> String {
+    text.chars().filter(|c| !c.is_control()).collect()
 }

@@ -7,6 +7,7 @@
 
 use crate::regression::{interpolated, mean};
 use serde::Serialize;
+use support::Point;
 use support::vectors::{add, dot};
 
 /// Plastic strain at the yield stress Rp0.2 (ISO 6892-1).
@@ -48,9 +49,9 @@ pub enum End {
 
 /// The nominal stress (MPa) at which the curve crosses the line of slope `young` through the strain
 /// 0.2 %, after the row `from`; `None` if it does not.
-pub(super) fn offset_yield(curve: &[[f64; 2]], young: f64, from: usize) -> Option<f64> {
+pub(super) fn offset_yield(curve: &[Point], young: f64, from: usize) -> Option<f64> {
     let rows = curve.iter().skip(from).map(|row| [row[1], row[0] - row[1] / young]);
-    let rows: Vec<[f64; 2]> = rows.collect();
+    let rows: Vec<Point> = rows.collect();
     let after = 1 + rows.iter().skip(1).position(|row| row[1] >= OFFSET)?;
     let sharp = (rows[after - 1][1] < 0.5 * OFFSET).then_some(OFFSET);
     Some(yield_stress(&rows, after, OFFSET, sharp))
@@ -59,7 +60,7 @@ pub(super) fn offset_yield(curve: &[[f64; 2]], young: f64, from: usize) -> Optio
 /// The stress at the plastic strain `at` of a curve [stress, plastic strain] that exceeds it from
 /// the row `after` on. Between the rows before and after a sharp yield it is where the curve after
 /// it, continued to the plastic strain `back`, begins.
-pub(super) fn yield_stress(curve: &[[f64; 2]], after: usize, at: f64, back: Option<f64>) -> f64 {
+pub(super) fn yield_stress(curve: &[Point], after: usize, at: f64, back: Option<f64>) -> f64 {
     let on = |row: usize, strain: f64| {
         let [from, to] = [curve[row], curve[row + 1]];
         from[0] + (to[0] - from[0]) * (strain - from[1]) / (to[1] - from[1])
@@ -73,7 +74,7 @@ pub(super) fn yield_stress(curve: &[[f64; 2]], after: usize, at: f64, back: Opti
 /// The draw of a curve after the row `from`; `None` if it does not neck or breaks in the neck.
 /// `given` is the natural draw ratio if it was measured.
 pub(super) fn draw(
-    curve: &[[f64; 2]],
+    curve: &[Point],
     from: usize,
     noise: f64,
     given: Option<f64>,
@@ -124,7 +125,7 @@ pub(super) fn draw(
 }
 
 /// The last row after `from` at which the strain is uniform, and how the specimen ends.
-pub(super) fn uniform_end(curve: &[[f64; 2]], from: usize, noise: f64) -> (usize, End) {
+pub(super) fn uniform_end(curve: &[Point], from: usize, noise: f64) -> (usize, End) {
     let last = curve.len() - 1;
     let top = highest(curve, from, curve.len());
     if from > last {
@@ -137,7 +138,7 @@ pub(super) fn uniform_end(curve: &[[f64; 2]], from: usize, noise: f64) -> (usize
 }
 
 /// The first maximum after `from` below which the stress falls.
-fn peak(curve: &[[f64; 2]], from: usize, noise: f64) -> Option<usize> {
+fn peak(curve: &[Point], from: usize, noise: f64) -> Option<usize> {
     let mut top = from;
     for row in from..curve.len() {
         if curve[row][1] > curve[top][1] {
@@ -154,14 +155,14 @@ fn change(stress: f64, noise: f64) -> f64 {
 }
 
 /// The last of the highest rows.
-pub(super) fn highest(curve: &[[f64; 2]], from: usize, to: usize) -> usize {
+pub(super) fn highest(curve: &[Point], from: usize, to: usize) -> usize {
     let rows = from..to;
     rows.max_by(|a, b| curve[*a][1].total_cmp(&curve[*b][1])).unwrap_or(from)
 }
 
 /// Stress and strain at the end of a plateau: of all constants that continue as a parabola, the
 /// closest to the curve in the sense of least squares.
-fn plateau_end(curve: &[[f64; 2]]) -> [f64; 2] {
+fn plateau_end(curve: &[Point]) -> Point {
     let [from, to] = [curve[0][0], curve[curve.len() - 1][0]];
     let strain = |point: usize| from + (to - from) * point as f64 / POINTS as f64;
     let stresses: Vec<f64> =

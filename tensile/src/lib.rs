@@ -3,14 +3,12 @@
 //!
 //! | step | file |
 //! |---|---|
-//! | text, specimens, columns, units, dimensions | `number_table`, `name`, `quantity`, `preamble`, `record` |
-//! | unloading, break, shaking strains | `cleaning`, `isotonic` |
+//! | text, specimens, columns, units, dimensions | `number_table`, `name`, `quantity`, `record` |
+//! | unloading, break, shaking strains | `cleaning`, `regression` |
 //! | Young's modulus and toe (ISO 527-1, ASTM D638) | `linear_part` |
 //! | yield, plateau, natural draw ratio, necking | `landmarks` |
 //! | one specimen, its local curve | `specimen`, `local_curve` |
-//! | local curve in the neck | `cold_drawing` |
-//! | mean over the specimens, table, fracture strain | `fit`, `thinning` |
-//! | the material and its file | `material_file` |
+//! | mean over the specimens, table, fracture strain, file of the material | `fit` |
 //!
 //! ```
 //! use tensile::{FitOptions, MaterialFit, RecordOptions, SpecimenOptions};
@@ -32,35 +30,31 @@
 #![cfg_attr(not(test), warn(unreachable_pub))]
 
 mod cleaning;
-mod cold_drawing;
 mod fit;
-mod isotonic;
 mod landmarks;
 mod linear_part;
 mod local_curve;
-mod material_file;
 mod name;
 mod number_table;
-mod preamble;
 mod quantity;
 mod record;
 mod regression;
 mod specimen;
-mod thinning;
 
-pub use fit::{FitOptions, FractureSource, HardeningRow, MaterialFit, Origin, Statistic};
+pub use fit::{
+    FitOptions, FractureSource, HardeningRow, MaterialFit, Origin, Statistic, material_file,
+};
 pub use landmarks::{Draw, End};
 pub use linear_part::LinearPart;
-pub use material_file::material_file;
-pub use preamble::StatedDimension;
+pub use number_table::StatedDimension;
 pub use quantity::Quantity;
 pub use record::{Cause, ReadColumn, RecordOptions, RecordRow};
 pub use specimen::{Softening, Specimen, SpecimenOptions};
 
 use std::path::Path;
-use support::fault::Fault;
+use support::{Fault, fault};
 
 /// Puts the file before what is wrong with it.
 fn in_file(path: &Path) -> impl Fn(String) -> Fault + Copy {
-    move |what| Fault::from(format!("{} {what}", path.display()))
+    move |what| fault!("{} {what}", path.display())
 }

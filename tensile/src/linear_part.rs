@@ -11,6 +11,7 @@ use crate::landmarks::highest;
 use crate::regression::Regression;
 use serde::Serialize;
 use std::ops::Range;
+use support::Point;
 
 /// The linear part of a curve.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -50,7 +51,7 @@ const EXTENSIONS: usize = 3;
 impl LinearPart {
     /// The linear part of a curve [strain, stress (MPa)] with increasing strain and the given
     /// `noise` of strain and stress; `None` for a curve without a rising part.
-    pub(super) fn find(curve: &[[f64; 2]], noise: [f64; 2]) -> Option<Self> {
+    pub(super) fn find(curve: &[Point], noise: [f64; 2]) -> Option<Self> {
         let end = highest(curve, 0, curve.len()) + 1;
         let maximum = curve.get(end - 1)?[1];
         let mut part = seed(&curve[..end], (SEED * maximum).max(12.0 * noise[1]), noise)?;
@@ -58,7 +59,7 @@ impl LinearPart {
             let straight = STRAIGHT * maximum / part.young;
             let tolerance = straight + 3.0 * f64::hypot(noise[0], noise[1] / part.young);
             let off_line =
-                |row: &[f64; 2]| (row[0] - part.toe - row[1] / part.young).abs() > tolerance;
+                |row: &Point| (row[0] - part.toe - row[1] / part.young).abs() > tolerance;
             let last = part.first + part.rows;
             let first = curve[..part.first].iter().rposition(off_line).map_or(0, |row| row + 1);
             let last = curve[last..end].iter().position(off_line).map_or(end, |row| last + row);
@@ -75,11 +76,11 @@ impl LinearPart {
     /// The line of a metal with the yield stress `yields` (MPa) through its `rows` [strain, stress
     /// (MPa)] as measured, in their order, in place of this one; `None` for another material, or
     /// for fewer than three rows. The line does not begin before the record.
-    pub(super) fn of_metal(&self, rows: &[[f64; 2]], yields: f64) -> Option<Self> {
+    pub(super) fn of_metal(&self, rows: &[Point], yields: f64) -> Option<Self> {
         let [low, high] = BETWEEN.map(|part| part * yields);
         let low = low.max((self.strain[0] * self.young).min(0.5 * high));
         let loading = rows.iter().take_while(|row| row[1] <= high);
-        let used: Vec<[f64; 2]> = loading.filter(|row| row[1] >= low).copied().collect();
+        let used: Vec<Point> = loading.filter(|row| row[1] >= low).copied().collect();
         let line = Self::through(&used, 0..used.len())?;
         let toe = line.toe.max(rows[0][0] - rows[0][1] / line.young);
         let strains = || used.iter().map(|row| row[0] - toe);
@@ -91,7 +92,7 @@ impl LinearPart {
     }
 
     /// The line through rows, if it rises.
-    pub(super) fn through(curve: &[[f64; 2]], rows: Range<usize>) -> Option<Self> {
+    pub(super) fn through(curve: &[Point], rows: Range<usize>) -> Option<Self> {
         let first = rows.start;
         let rows = &curve[rows];
         let Regression { mean: [strain, stress], slope, error, .. } = Regression::new(rows);
@@ -109,7 +110,7 @@ impl LinearPart {
 
 /// The window over the stress `span` whose slope, less twice its standard error from the noise, is
 /// largest.
-fn seed(curve: &[[f64; 2]], span: f64, noise: [f64; 2]) -> Option<LinearPart> {
+fn seed(curve: &[Point], span: f64, noise: [f64; 2]) -> Option<LinearPart> {
     let mut last = 0;
     let windows = (0..curve.len()).map_while(|first| {
         last = last.max(first + MIN_SEED - 1);

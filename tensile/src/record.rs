@@ -2,16 +2,15 @@
 
 use crate::in_file;
 use crate::name::Name;
-use crate::number_table::NumberTable;
-use crate::preamble::{self, StatedDimension};
+use crate::number_table::{self, NumberTable, StatedDimension};
 use crate::quantity::Quantity::{
     self, Extension, Force, PlasticStrain, Strain, Stress, TrueStrain, TrueStress,
 };
 use serde::Serialize;
 use std::fmt;
 use std::path::{Path, PathBuf};
-use support::fault::{Fault, fault};
 use support::text_table::TextRow;
+use support::{Fault, fault};
 
 /// What a file does not say about its columns and its specimen.
 #[derive(Clone, Debug, Default)]
@@ -127,7 +126,7 @@ impl Record {
         let column = |index: usize| ReadColumn::new(pair[index], labels, options).map_err(refuse);
         let read_as = [column(0)?, column(1)?];
         let used = pair.map(|(quantity, _)| quantity);
-        let (stated, mut unused) = preamble::dimensions(&table.preamble, table.style);
+        let (stated, mut unused) = number_table::dimensions(&table.preamble, table.style);
         let (sizes, stated) = sizes(used, stated, &mut unused, options).map_err(refuse)?;
         let units = options.units.iter().filter(|(of, _)| !used.contains(of));
         unused.extend(units.map(|(quantity, unit)| format!("--units {quantity}={unit}")));
@@ -139,8 +138,8 @@ impl Record {
             }
         }
         let at = |row: &TextRow| {
-            let place = format!("{}:{}", path.display(), row.line);
-            move |what: String| fault(place, what, "")
+            let (path, line) = (path.display(), row.line);
+            move |what: String| fault!("{path}:{line}: {what}")
         };
         for column in &read_as {
             if let Some(row) = table.thousands(column.number - 1) {

@@ -14,13 +14,13 @@ use crate::in_file;
 use crate::landmarks::{self, Draw, End, offset_yield, uniform_end};
 use crate::linear_part::LinearPart;
 use crate::local_curve::{first_part, second_part, true_row};
-use crate::preamble::StatedDimension;
+use crate::number_table::StatedDimension;
 use crate::quantity::Quantity::Extension;
 use crate::record::{Cause, ReadColumn, Record, RecordRow, within};
 use crate::regression::Regression;
 use serde::Serialize;
 use std::path::PathBuf;
-use support::fault::{Fault, fault};
+use support::{Fault, Point, fault};
 
 /// What is known about the material or its specimens besides the records.
 #[derive(Clone, Copy, Debug, Default)]
@@ -37,7 +37,7 @@ pub struct Softening {
     /// Number of rows.
     pub rows: usize,
     /// Nominal [strain, stress (MPa)] at the maximum and at the last row.
-    pub ends: [[f64; 2]; 2],
+    pub ends: [Point; 2],
 }
 
 /// One evaluated specimen. Stresses are in MPa; strains are from the toe.
@@ -80,14 +80,14 @@ pub struct Specimen {
     pub end: End,
     /// Nominal curve [strain, stress] without the dropped rows.
     #[serde(skip)]
-    pub nominal: Vec<[f64; 2]>,
+    pub nominal: Vec<Point>,
     /// Local curve [true stress, plastic strain] up to the upper yield or, without a draw, to the
     /// end of the uniform deformation. It starts at zero plastic strain.
     #[serde(skip)]
-    pub before: Vec<[f64; 2]>,
+    pub before: Vec<Point>,
     /// Local curve from the natural draw ratio on; empty without a draw.
     #[serde(skip)]
-    pub after: Vec<[f64; 2]>,
+    pub after: Vec<Point>,
 }
 
 /// Limits of Young's modulus (MPa) and of the yield strain; wrong units exceed them.
@@ -110,11 +110,11 @@ impl Specimen {
         let file = in_file(&path);
         let Cleaned { curve: nominal, averaged, noise } =
             cleaned(&mut record.rows).map_err(|line| {
-                fault(
-                    format!("{}:{line}", path.display()),
-                    "from here on the strain falls for most of the file",
-                    "sort the rows by time, and give each specimen its own file",
-                )
+                fault!(
+    "{}:{line}: from here on the strain falls for most of the file: sort the rows by time, and give each specimen its \
+     own file",
+    path.display()
+)
             })?;
         let curve = Compensated::new(&record, &nominal, noise, options).map_err(file)?;
         let Compensated { young, elastic, noise, rows: smooth, .. } = &curve;
@@ -195,7 +195,7 @@ impl Specimen {
 /// A nominal curve without noise, toe and compliance of the machine.
 struct Compensated {
     /// [strain, stress]
-    rows: Vec<[f64; 2]>,
+    rows: Vec<Point>,
     /// Standard deviations of the noise of strain and stress that is left.
     noise: [f64; 2],
     linear: LinearPart,
@@ -209,7 +209,7 @@ struct Compensated {
 impl Compensated {
     fn new(
         record: &Record,
-        curve: &[[f64; 2]],
+        curve: &[Point],
         noise: [f64; 2],
         options: &SpecimenOptions,
     ) -> Result<Self, String> {
@@ -265,7 +265,7 @@ impl Compensated {
 /// The linear part, whose toe is subtracted from the curve. Its rows are found on the
 /// nominal curve, whose slope is largest at the start; its modulus is the slope of the true stress
 /// over the logarithmic strain, as the solver reads it.
-fn linear_part(curve: &mut [[f64; 2]], record: &Record, noise: [f64; 2]) -> Option<LinearPart> {
+fn linear_part(curve: &mut [Point], record: &Record, noise: [f64; 2]) -> Option<LinearPart> {
     let nominal = LinearPart::find(curve, noise)?;
     curve.iter_mut().for_each(|row| row[0] -= nominal.toe);
     let end = nominal.first + nominal.rows;
@@ -273,7 +273,7 @@ fn linear_part(curve: &mut [[f64; 2]], record: &Record, noise: [f64; 2]) -> Opti
     let metal = offset_yield(curve, nominal.young, end)
         .and_then(|yields| nominal.of_metal(&rows.collect::<Vec<_>>(), yields));
     let part = metal.or_else(|| {
-        let rows: Vec<[f64; 2]> = curve[..end].iter().map(true_row).collect();
+        let rows: Vec<Point> = curve[..end].iter().map(true_row).collect();
         LinearPart::through(&rows, nominal.first..end)
     })?;
     curve.iter_mut().for_each(|row| row[0] -= part.toe);
@@ -282,7 +282,7 @@ fn linear_part(curve: &mut [[f64; 2]], record: &Record, noise: [f64; 2]) -> Opti
 
 /// Half the number of rows over which the stress is smoothed, from its noise; few enough to leave
 /// the yield peak.
-fn half_window(curve: &[[f64; 2]], noise: f64) -> usize {
+fn half_window(curve: &[Point], noise: f64) -> usize {
     let maximum = curve.iter().map(|row| row[1]).fold(0.0, f64::max);
     let rise = curve.iter().position(|row| row[1] >= 0.5 * maximum);
     let needed = 0.5 * (noise / (SMOOTH * maximum).max(f64::MIN_POSITIVE)).powi(2);
@@ -291,7 +291,7 @@ fn half_window(curve: &[[f64; 2]], noise: f64) -> usize {
 
 /// The curve with each stress replaced by the stress of the regression line through the rows around
 /// it.
-fn smoothed(curve: &[[f64; 2]], half: usize) -> Vec<[f64; 2]> {
+fn smoothed(curve: &[Point], half: usize) -> Vec<Point> {
     let last = curve.len().saturating_sub(1);
     let value = |row: usize| {
         let half = half.min(row).min(last - row);

@@ -2,8 +2,7 @@
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use support::fault::Fault;
-use support::key_limits;
+use support::{Fault, fault, key_limits};
 use surrogate::Surrogate;
 
 /// Sizes, loss weights and optimiser of one training.
@@ -63,7 +62,7 @@ impl TrainingConfig {
 
     /// Rejects impossible values; the error names the key and the rule.
     pub fn validate(&self) -> Result<(), Fault> {
-        key_limits::check::<Self>(self).map_err(|error| Fault::from(error.to_string()))?;
+        key_limits::check::<Self>(self).map_err(|error| fault!("{error}"))?;
         let checks = [
             (
                 "embedding",
@@ -81,9 +80,7 @@ impl TrainingConfig {
             ),
         ];
         match checks.into_iter().find(|(.., holds)| !holds) {
-            Some((key, value, rule, _)) => {
-                Err(Fault::from(format!("{key} = {value} violates {rule}")))
-            }
+            Some((key, value, rule, _)) => Err(fault!("{key} = {value} violates {rule}")),
             None => Ok(()),
         }
     }

@@ -12,16 +12,15 @@
 //! Apart from these factors and from rounding, the function of the networks is the function of the
 //! pretrained networks.
 
+use crate::affine;
 use crate::config::{DAMAGE_SHARPNESS, TrainingConfig};
-use crate::error::{TrainError, failed};
-use crate::export::layers;
-use crate::mirror;
-use crate::networks::{Networks, options};
+use crate::networks::{Networks, layers, options};
 use crate::samples::Scales;
 use crate::validation::Parity;
 use burn::tensor::DType;
 use dataset::{Manifest, Row};
 use hinge::HingeConstants;
+use support::{Fault, fault, refuse};
 use surrogate::{Card, Layer, Layers, Standardisation, Surrogate, feature_names};
 
 /// The initial networks and their scales.
@@ -37,13 +36,12 @@ impl Initial {
         pretrained: &Surrogate,
         rows: &[Row],
         manifest: &Manifest,
-    ) -> Result<Self, TrainError> {
+    ) -> Result<Self, Fault> {
         if pretrained.card().domain.holes.is_some() && manifest.domain.holes.is_none() {
-            return Err(failed(
+            refuse!(
                 "the initial weights are for holes of several radii, but the database has holes of one radius; start with \
                  weights for one radius, or with random weights"
-                    .into(),
-            ));
+            );
         }
         let pretrained = at_size_of(pretrained, &manifest.hinge);
         let parity = Parity::new(&pretrained, rows);
@@ -94,35 +92,33 @@ pub(crate) fn inherit(card: &mut Card, pretrained: &Surrogate, rows: &[Row]) {
 }
 
 /// Rejects initial weights whose sizes, sharpness or symmetry differ from the configuration.
-pub fn check_pretrained(pretrained: &Surrogate, config: &TrainingConfig) -> Result<(), TrainError> {
+pub fn check_pretrained(pretrained: &Surrogate, config: &TrainingConfig) -> Result<(), Fault> {
     let given = pretrained.layers();
     let heads = 1 + usize::from(given.chi_p.is_some());
     let damage = std::iter::repeat_n(config.damage().to_vec(), heads);
     let expected: Vec<_> = std::iter::once(config.embedding.clone()).chain(damage).collect();
     let found = given.widths();
     if found != expected {
-        return Err(failed(format!(
+        refuse!(
             "the initial weights have the layers {found:?}, but the configuration has {expected:?} \
              (embedding and damage heads); change the configuration, or start with random weights"
-        )));
+        );
     }
     let found = pretrained.card().damage_sharpness;
     if found != DAMAGE_SHARPNESS {
-        return Err(failed(format!(
+        refuse!(
             "the initial weights have `damage_sharpness = {found}`, and a training has \
              {DAMAGE_SHARPNESS}; start with random weights"
-        )));
+        );
     }
     let exact = options(DType::F64);
     let folded = Networks::from_layers(&given, &exact);
     let unchanged = layers(&folded)? == given;
-    let centred = mirror::is_centred(&pretrained.card().standardisation);
+    let centred = affine::is_centred(&pretrained.card().standardisation);
     if unchanged && centred {
         return Ok(());
     }
-    Err(failed(
-        "the initial weights do not have the mirror symmetry; start with random weights".into(),
-    ))
+    Err(fault!("the initial weights do not have the mirror symmetry; start with random weights"))
 }
 
 /// The factor of the predictions that is closest to the targets.

@@ -20,17 +20,11 @@
 #![cfg_attr(not(test), warn(unreachable_pub))]
 
 mod affine;
-mod bins;
 mod config;
 mod distillation;
-mod epoch;
-mod error;
 mod error_interval;
-mod export;
 mod fine_tuning;
-mod force_tangents;
 mod loss;
-mod mirror;
 mod networks;
 mod samples;
 mod state;
@@ -39,9 +33,8 @@ mod validation;
 
 pub use config::TrainingConfig;
 pub use distillation::{Distillation, TrainingData};
-pub use epoch::Epoch;
-pub use error::TrainError;
 pub use error_interval::ErrorInterval;
 pub use fine_tuning::check_pretrained;
+pub use state::Epoch;
 pub use training::{Start, Trained, Training, train};
 pub use validation::{Parity, spot_check};

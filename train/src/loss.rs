@@ -10,9 +10,8 @@
 //! output y of its head. With a large beta, a moderately negative y represents the zero damage of a
 //! ligament before yield.
 
-use crate::affine::forward;
+use crate::affine::{Embedding, forward, with_tangents};
 use crate::config::{DAMAGE_SHARPNESS, DAMAGE_WEIGHT, ENERGY_WEIGHT};
-use crate::force_tangents::{Embedding, with_tangents};
 use crate::networks::Networks;
 use crate::samples::Batch;
 use burn::tensor::Tensor;

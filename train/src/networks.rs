@@ -1,12 +1,12 @@
 //! The embedding chi and the damage heads chi_D and chi_P of (14) as Burn modules.
 
-use crate::affine::Affine;
+use crate::affine::{Affine, Fold};
 use crate::config::TrainingConfig;
-use crate::mirror::Fold;
 use burn::module::{Module, Param};
-use burn::tensor::{DType, Device, Tensor, TensorCreationOptions, TensorData};
+use burn::tensor::{DType, Device, Tensor, TensorCreationOptions, TensorData, TensorReadError};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+use support::{Fault, fault};
 use surrogate::{Layer, Layers};
 
 /// The networks have no common layers: D_peak, which has more scatter, would otherwise cause the
@@ -166,5 +166,163 @@ impl Dense {
 
     fn affine(&self) -> Affine {
         self.fold.unfold(Affine { weight: self.weight.val(), bias: self.bias.val() })
+    }
+}
+
+// Conversion of Burn's networks to the layers of a weight file.
+
+/// The layers in float64, with weights as (outputs, inputs).
+pub(crate) fn layers(networks: &Networks) -> Result<Layers, Fault> {
+    let layers = |network: &Mlp| network.affine().into_iter().map(layer).collect();
+    Ok(Layers {
+        chi: layers(&networks.chi)?,
+        chi_d: layers(&networks.chi_d)?,
+        chi_p: networks.chi_p.as_ref().map(layers).transpose()?,
+    })
+}
+
+/// The fault of a tensor that the backend does not return.
+pub(crate) fn unread(error: TensorReadError) -> Fault {
+    fault!("a tensor cannot be read from the backend: {error}")
+}
+
+fn layer(affine: Affine) -> Result<Layer, Fault> {
+    let weight = affine.weight.inner().transpose();
+    let bias = affine.bias.inner();
+    Ok(Layer {
+        weight: surrogate::Tensor {
+            shape: weight.dims().to_vec(),
+            values: weight.try_into_vec_as().map_err(unread)?,
+        },
+        bias: surrogate::Tensor {
+            shape: bias.dims().to_vec(),
+            values: bias.try_into_vec_as().map_err(unread)?,
+        },
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::config::{DAMAGE_SHARPNESS, TrainingConfig};
+    use crate::loss::predict;
+    use crate::loss::tests::config;
+    use crate::networks::options;
+    use crate::samples::{Batch, Scales};
+    use crate::validation::Parity;
+    use burn::tensor::DType;
+    use dataset::Row;
+    use hinge::{HingeConstants, HingeSample, NetLigament, TrainingDomain};
+    use surrogate::{
+        Card, FEATURE_NAMES, FORMAT_VERSION, Surrogate, TestErrors, UNITS, feature_names,
+    };
+
+    fn row(index: usize) -> Row {
+        let wave = |speed: f64| (speed * index as f64 + 0.3).sin();
+        Row {
+            job: format!("{index}"),
+            design: HingeConstants::PAPER.hinge(15.0 + 9.0 * wave(1.3), 1.5 + 0.7 * wave(2.9)),
+            sample: HingeSample {
+                a: 2.0 * wave(0.7),
+                s: 2.0 * wave(1.9),
+                theta: 0.6 + 0.6 * wave(3.1),
+                w: 50.0,
+                f_a: 10.0,
+                f_s: 5.0,
+                m_theta: 80.0,
+                d: 0.01,
+                d_peak: Some(0.2),
+                ..HingeSample::default()
+            },
+            ..Row::default()
+        }
+    }
+
+    fn surrogate(networks: &Networks, scales: &Scales) -> Surrogate {
+        let mut domain = TrainingDomain::from_box([[0.0; 2]; 3], [1.0; 2], [1.0; 2]);
+        domain.holes = (scales.features() == FEATURE_NAMES.len()).then_some([0.05, 0.35]);
+        let card = Card {
+            format_version: FORMAT_VERSION,
+            weights_hash: None,
+            units: UNITS.into(),
+            features: FEATURE_NAMES[..scales.features()].iter().map(ToString::to_string).collect(),
+            standardisation: scales.standardisation.clone(),
+            energy_scale: scales.energy,
+            damage_scale: scales.damage,
+            peak_scale: scales.peak,
+            damage_sharpness: DAMAGE_SHARPNESS,
+            fine_tuned_from: None,
+            distillation: None,
+            domain,
+            hinge: HingeConstants::PAPER,
+            material: String::new(),
+            material_hash: None,
+            settings_hash: None,
+            tier: String::new(),
+            bent_rays: false,
+            dataset_hash: String::new(),
+            split_hash: String::new(),
+            training: serde_json::Value::Null,
+            training_rays: None,
+            training_s: None,
+            test_errors: TestErrors::default(),
+            error_bins: Vec::new(),
+            spot_check: None,
+        };
+        Surrogate::from_parts(layers(networks).unwrap(), card).unwrap()
+    }
+
+    /// |burn - kernel| / |kernel| over all rows, for W, F_a, F_s, M_theta, D and D_peak.
+    fn disagreement(dtype: DType, several_holes: bool) -> [f64; 6] {
+        let features = feature_names(several_holes).len();
+        let options = options(dtype);
+        let config = TrainingConfig { seed: 1, embedding: vec![64, 64, 32], ..config() };
+        let networks = Networks::new(&config, features, true, &options);
+        let mut rows: Vec<Row> = (0..200).map(row).collect();
+        if several_holes {
+            for (i, row) in rows.iter_mut().enumerate() {
+                row.design.fillet_ratio = 0.2 + 0.15 * (2.3 * i as f64).sin();
+            }
+        }
+        let scales = Scales::new(&rows, 0.16, feature_names(several_holes)).unwrap();
+        let samples: Vec<_> =
+            rows.iter().map(|row| scales.sample(&row.design, &row.sample)).collect();
+        let predicted = predict(&networks, &Batch::new(&samples, features, &options));
+        let column = |tensor: &burn::tensor::Tensor<2>, k: usize, scale: f64| -> Vec<f64> {
+            let column = tensor.clone().inner().narrow(1, k, 1);
+            let values: Vec<f64> = column.try_into_vec_as().unwrap();
+            values.into_iter().map(|value| scale * value).collect()
+        };
+        let mut burn = [
+            column(&predicted.energy, 0, scales.energy),
+            column(&predicted.forces, 0, scales.forces[0]),
+            column(&predicted.forces, 1, scales.forces[1]),
+            column(&predicted.forces, 2, scales.forces[2]),
+            column(&predicted.damage, 0, scales.damage),
+            column(&predicted.damage, 1, scales.peak.unwrap()),
+        ];
+        // Burn's moment is the moment of the hinge that the networks see.
+        for (i, row) in rows.iter().enumerate() {
+            let ligament = NetLigament::new(&row.design, scales.hole);
+            burn[3][i] += burn[1][i] * ligament.by_theta(row.sample.theta)[0];
+        }
+        let parity = Parity::new(&surrogate(&networks, &scales), &rows);
+        std::array::from_fn(|quantity| {
+            let pairs = || burn[quantity].iter().zip(parity.points(quantity));
+            let error: f64 = pairs().map(|(burn, [_, predicted])| (burn - predicted).powi(2)).sum();
+            let norm: f64 = pairs().map(|(_, [_, predicted])| predicted.powi(2)).sum();
+            (error / norm).sqrt()
+        })
+    }
+
+    #[test]
+    fn the_kernel_agrees_with_burn_in_both_precisions() {
+        for (dtype, tolerance) in [(DType::F32, 1e-6), (DType::F64, 1e-14)] {
+            for several_holes in [false, true] {
+                let errors = disagreement(dtype, several_holes);
+                let close = errors.iter().all(|&error| error < tolerance);
+                assert!(close, "{dtype:?} {several_holes}: {errors:?}");
+            }
+        }
     }
 }

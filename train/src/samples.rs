@@ -1,11 +1,11 @@
 //! Rows as inputs and targets of the networks: standardised features, scaled targets, batches.
 
-use crate::error::{TrainError, failed};
-use crate::mirror;
+use crate::affine;
 use burn::tensor::{Tensor, TensorCreationOptions, TensorData};
 use dataset::Row;
 use hinge::{HingeDeformation, HingeDesign, HingeSample, NetLigament};
-use support::statistics;
+use std::array::from_fn;
+use support::{Fault, fault, refuse, statistics};
 use surrogate::{Card, FEATURE_NAMES, Standardisation, feature_names, features};
 
 /// The scales of (14) and (15), computed from the training rows.
@@ -70,7 +70,7 @@ impl Scales {
     ///
     /// `hole` is the hole of the hinges that the networks see, over w_lig, and `names` are their
     /// features. The rows include their mirror images.
-    pub(crate) fn new(rows: &[Row], hole: f64, names: &[&'static str]) -> Result<Self, TrainError> {
+    pub(crate) fn new(rows: &[Row], hole: f64, names: &[&'static str]) -> Result<Self, Fault> {
         let count = rows.len() as f64;
         let root_mean_square = |target: &'static str, value: fn(&Row) -> f64| {
             let scale = statistics::root_mean_square(rows.iter().map(value));
@@ -78,10 +78,10 @@ impl Scales {
             if scale > 0.0 && scale.is_finite() {
                 Ok(scale)
             } else {
-                Err(failed(format!(
+                Err(fault!(
                     "the root mean square of {target} over the training rows is {scale}, so it cannot be fitted; check the \
                      database"
-                )))
+                ))
             }
         };
         let xi: Vec<[f64; FEATURES]> = (rows.iter())
@@ -103,17 +103,17 @@ impl Scales {
             // The rounding error of the mean gives a constant feature a standard deviation of this
             // size.
             if !(std[k] > 1e-12 * mean[k].abs() && std[k].is_finite()) {
-                return Err(failed(format!(
+                refuse!(
                     "the feature `{feature}` is {} in every training row, so the network cannot \
                      learn its effect; vary it in the campaign",
                     mean[k]
-                )));
+                );
             }
         }
         let with_peak = rows.iter().filter(|row| row.sample.d_peak.is_some()).count();
         let peak_weight = count / (with_peak as f64).max(1.0);
         let mut standardisation = Standardisation { mean, std };
-        mirror::centre(&mut standardisation);
+        affine::centre(&mut standardisation);
         Ok(Self {
             standardisation,
             hole,
@@ -135,7 +135,7 @@ impl Scales {
     }
 
     /// The scales of trained weights; the scales of the forces are computed from the rows.
-    pub(crate) fn from_card(card: &Card, rows: &[Row]) -> Result<Self, TrainError> {
+    pub(crate) fn from_card(card: &Card, rows: &[Row]) -> Result<Self, Fault> {
         Ok(Self {
             standardisation: card.standardisation.clone(),
             energy: card.energy_scale,
@@ -154,7 +154,7 @@ impl Scales {
     pub(crate) fn sample(&self, design: &HingeDesign, sample: &HingeSample) -> Sample {
         let Standardisation { mean, std } = &self.standardisation;
         let standardise = |xi: [f64; FEATURES]| -> [f64; FEATURES] {
-            std::array::from_fn(|k| mean.get(k).map_or(0.0, |mean| (xi[k] - mean) / std[k]))
+            from_fn(|k| mean.get(k).map_or(0.0, |mean| (xi[k] - mean) / std[k]))
         };
         let ligament = NetLigament::new(design, self.hole);
         let (design, sample) = (&ligament.design(design), &ligament.sample(sample));
@@ -165,11 +165,9 @@ impl Scales {
         Sample {
             inputs: standardise(features(design, &sample.deformation())),
             origin: standardise(features(design, &HingeDeformation::default())),
-            force_factors: std::array::from_fn(|k| {
-                self.energy * by_deformation[k] / (std[k] * self.forces[k])
-            }),
+            force_factors: from_fn(|k| self.energy * by_deformation[k] / (std[k] * self.forces[k])),
             energy: sample.w / self.energy,
-            forces: std::array::from_fn(|k| forces[k] / self.forces[k]),
+            forces: from_fn(|k| forces[k] / self.forces[k]),
             damage: [
                 sample.d / self.damage,
                 self.peak.map_or(0.0, |scale| sample.d_peak.unwrap_or(0.0) / scale),
@@ -183,24 +181,20 @@ impl Scales {
 /// by a factor of ten; an erroneous solve has larger errors, by powers of ten.
 const OUTLIER: f64 = 100.0;
 
-fn refuse_outlier(
-    rows: &[Row],
-    target: &'static str,
-    value: fn(&Row) -> f64,
-) -> Result<(), TrainError> {
+fn refuse_outlier(rows: &[Row], target: &'static str, value: fn(&Row) -> f64) -> Result<(), Fault> {
     let mut sorted: Vec<f64> = rows.iter().map(|row| value(row).abs()).collect();
     sorted.sort_by(f64::total_cmp);
     let usual = sorted.get(9 * sorted.len() / 10).copied().unwrap_or(0.0);
     let outlier = rows.iter().find(|row| value(row).abs() > OUTLIER * usual);
     match outlier.filter(|_| usual > 0.0) {
-        Some(row) => Err(failed(format!(
+        Some(row) => Err(fault!(
             "job {}, lambda = {}: {target} = {:e} is {:.0} times the 90 % quantile of the training \
              rows and would dominate the loss; check that job or remove its rows",
             row.job,
             row.sample.lambda,
             value(row),
             value(row).abs() / usual
-        ))),
+        )),
         None => Ok(()),
     }
 }

@@ -4,18 +4,16 @@
 //! of the best epoch and the state of the optimiser as Burn's own records (bytes), and all other
 //! data as JSON.
 
-use crate::epoch::Epoch;
-use crate::error::{TrainError, failed};
 use crate::networks::Networks;
 use burn::module::Module;
 use burn::optim::ModuleOptimizer;
 use burn::store::{ModuleRecord, RecordError};
 use burn::tensor::Bytes;
 use safetensors::tensor::{Dtype, SafeTensors, TensorView};
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize};
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
-use support::fault::{unread, unwritten};
+use support::{Fault, fault, refuse, unread, unwritten};
 use surrogate::Card;
 
 /// Format version of the file. A state is temporary, so no other version is read.
@@ -46,17 +44,17 @@ pub(crate) struct State {
 /// The names of the records.
 const RECORDS: [&str; 3] = ["networks", "best", "optimiser"];
 
-fn unrecorded(error: RecordError) -> TrainError {
-    failed(format!("the backend cannot record the networks: {error}"))
+fn unrecorded(error: RecordError) -> Fault {
+    fault!("the backend cannot record the networks: {error}")
 }
 
 /// The error of a file that is no whole state, with the reason.
-fn malformed(path: &Path) -> impl Fn(&dyn Display) -> TrainError {
+fn malformed(path: &Path) -> impl Fn(&dyn Display) -> Fault {
     move |reason| {
         let path = path.display();
-        failed(format!(
+        fault!(
             "{path} is not a state of a training, or is damaged ({reason}); delete it and start again"
-        ))
+        )
     }
 }
 
@@ -67,7 +65,7 @@ pub(crate) fn write(
     networks: &Networks,
     best: &Networks,
     optimiser: &ModuleOptimizer,
-) -> Result<(), TrainError> {
+) -> Result<(), Fault> {
     let records = [
         networks.clone().into_record().into_bytes().map_err(unrecorded)?,
         best.clone().into_record().into_bytes().map_err(unrecorded)?,
@@ -90,7 +88,7 @@ pub(crate) fn write(
 }
 
 impl State {
-    pub(crate) fn read(path: &Path) -> Result<Self, TrainError> {
+    pub(crate) fn read(path: &Path) -> Result<Self, Fault> {
         let malformed = malformed(path);
         let bytes = support::regular_file::read(path).map_err(unread(path))?;
         let (hash, body) = bytes
@@ -121,7 +119,7 @@ impl State {
 
     /// An error if the state has a different configuration, database, split or distillation, or
     /// different initial weights.
-    pub(crate) fn check(&self, card: &Card) -> Result<(), TrainError> {
+    pub(crate) fn check(&self, card: &Card) -> Result<(), Fault> {
         let saved = &self.progress.card;
         for (what, same) in [
             ("configuration", saved.training == card.training),
@@ -131,11 +129,11 @@ impl State {
             ("distillation", saved.distillation == card.distillation),
         ] {
             if !same {
-                return Err(failed(format!(
+                refuse!(
                     "{} is the state of another training: the {what} is different; continue with \
                      the original one, or discard it with --replace",
                     self.path.display()
-                )));
+                );
             }
         }
         Ok(())
@@ -147,10 +145,41 @@ impl State {
         self,
         networks: &Networks,
         optimiser: ModuleOptimizer,
-    ) -> Result<(Networks, Networks, ModuleOptimizer), TrainError> {
+    ) -> Result<(Networks, Networks, ModuleOptimizer), Fault> {
         let [current, best, adam] = self.records.map(Bytes::from_bytes_vec);
         let load = |record| networks.clone().try_load_record(ModuleRecord::from_bytes(record)?);
         let restored = || Ok((load(current)?, load(best)?, optimiser.from_bytes(adam)?));
         restored().map_err(unrecorded)
     }
+}
+
+// What an epoch of a training found.
+
+/// The result of one pass over the training rows.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Epoch {
+    /// Number of the epoch: 1, 2, ..., `epochs`.
+    pub epoch: usize,
+    /// Maximum number of epochs.
+    pub epochs: usize,
+    /// The loss (15): mean over the batches, each with the weights before its step.
+    pub training_loss: f64,
+    /// The loss (15) on the validation part at the end of the epoch.
+    pub validation_loss: f64,
+    /// Relative errors of each network on the validation part: of W and the forces (their geometric
+    /// mean), of D, and of D_peak; NaN if no validation row has a known target that is not zero.
+    #[serde(deserialize_with = "numbers_or_null")]
+    pub validation_errors: [f64; 3],
+    /// Learning rate at the end of the epoch.
+    pub learning_rate: f64,
+    /// Whether one of the validation errors is smaller than in all earlier epochs.
+    pub best: bool,
+    /// Training time so far (s).
+    pub elapsed_s: f64,
+}
+
+/// JSON has no NaN.
+fn numbers_or_null<'de, D: Deserializer<'de>>(values: D) -> Result<[f64; 3], D::Error> {
+    let values = <[Option<f64>; 3]>::deserialize(values)?;
+    Ok(values.map(|value| value.unwrap_or(f64::NAN)))
 }

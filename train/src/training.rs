@@ -1,18 +1,14 @@
 //! The training loop: optimiser steps with a cosine learning-rate schedule. Each network is taken
 //! from the epoch of its minimum validation error.
 
-use crate::bins::error_bins;
 use crate::config::{DAMAGE_SHARPNESS, TrainingConfig};
 use crate::distillation::TrainingData;
-use crate::epoch::Epoch;
-use crate::error::{TrainError, failed};
-use crate::export::layers;
 use crate::fine_tuning::{Initial, check_pretrained, inherit};
 use crate::loss::loss;
-use crate::networks::{Networks, options};
+use crate::networks::{Networks, layers, options, unread};
 use crate::samples::{Batch, Sample, Scales};
-use crate::state::{self, Progress, State};
-use crate::validation::Parity;
+use crate::state::{self, Epoch, Progress, State};
+use crate::validation::{Parity, error_bins};
 use burn::grad_clipping::GradientClippingConfig;
 use burn::module::ParamGroup;
 use burn::optim::{AdamConfig, GradientsParams, ModuleOptimizer, MuonConfig};
@@ -26,6 +22,7 @@ use std::collections::BTreeSet;
 use std::f64::consts::PI;
 use std::path::Path;
 use std::time::Instant;
+use support::{Fault, fault};
 use surrogate::{Card, FORMAT_VERSION, Surrogate, TestErrors, UNITS, feature_names};
 
 /// A trained surrogate with its history and test errors.
@@ -95,7 +92,7 @@ pub fn train(
     database: &Database,
     config: &TrainingConfig,
     progress: &mut dyn FnMut(&Epoch),
-) -> Result<Trained, TrainError> {
+) -> Result<Trained, Fault> {
     let mut training = Training::new(database, config, Start::Fresh)?;
     while !training.is_finished() {
         progress(&training.epoch()?);
@@ -109,8 +106,8 @@ impl Training {
         data: impl Into<TrainingData<'a>>,
         config: &TrainingConfig,
         start: Start,
-    ) -> Result<Self, TrainError> {
-        config.validate().map_err(|error| failed(format!("training configuration: {error}")))?;
+    ) -> Result<Self, Fault> {
+        config.validate().map_err(|error| fault!("training configuration: {error}"))?;
         let began = Instant::now();
         let data: TrainingData = data.into();
         let parts = Parts::new(data.database)?;
@@ -183,14 +180,14 @@ impl Training {
     }
 
     /// One pass over the training rows, and the states of the distillation.
-    pub fn epoch(&mut self) -> Result<Epoch, TrainError> {
+    pub fn epoch(&mut self) -> Result<Epoch, Fault> {
         let epoch = self.history.len() + 1;
         let training_loss = self.descend(epoch)?;
         let learning_rate = self.learning_rate(epoch * self.steps_per_epoch());
         let diverged = || {
-            Err(failed(format!(
+            Err(fault!(
                 "the loss is not finite in epoch {epoch}; lower `learning_rate` = {learning_rate}"
-            )))
+            ))
         };
         if !training_loss.is_finite() {
             return diverged();
@@ -233,7 +230,7 @@ impl Training {
     }
 
     /// Exports the best and the last networks and measures their errors on the test part.
-    pub fn finish(mut self) -> Result<Trained, TrainError> {
+    pub fn finish(mut self) -> Result<Trained, Fault> {
         self.card.training_s = self.history.last().map(|epoch| epoch.elapsed_s);
         let best = export(&self.best, &self.card)?;
         let parity = Parity::new(&best, &self.parts.test);
@@ -251,13 +248,13 @@ impl Training {
     }
 
     /// Atomically writes the state from which a [`Start::State`] continues.
-    pub fn save(&self, path: &Path) -> Result<(), TrainError> {
+    pub fn save(&self, path: &Path) -> Result<(), Fault> {
         let progress = Progress::new(&self.card, &self.history);
         state::write(path, &progress, &self.networks, &self.best, &self.optimiser)?;
         Ok(())
     }
 
-    fn resume(&mut self, state: State) -> Result<(), TrainError> {
+    fn resume(&mut self, state: State) -> Result<(), Fault> {
         state.check(&self.card)?;
         let Progress { card, history, .. } = state.progress.clone();
         self.elapsed_s = history.last().map_or(0.0, |epoch| epoch.elapsed_s);
@@ -269,7 +266,7 @@ impl Training {
 
     /// Makes the optimiser steps of one epoch, over the samples in an order given by seed and
     /// epoch. Returns the mean of (15), each batch evaluated before its step.
-    fn descend(&mut self, epoch: usize) -> Result<f64, TrainError> {
+    fn descend(&mut self, epoch: usize) -> Result<f64, Fault> {
         let mut order: Vec<usize> = (0..self.samples.len()).collect();
         let mut rng = ChaCha8Rng::seed_from_u64(self.config.seed);
         rng.set_stream(epoch as u64);
@@ -282,7 +279,7 @@ impl Training {
             let batch = Batch::new(&samples, self.scales.features(), &self.options);
             let value = loss(&networks, &batch);
             let gradients = GradientsParams::from_grads(value.backward(), &networks);
-            sum += value.try_into_scalar::<f64>()? * samples.len() as f64;
+            sum += value.try_into_scalar::<f64>().map_err(unread)? * samples.len() as f64;
             let rate = self.learning_rate(first + step);
             networks = self.optimiser.step(rate, networks, gradients);
         }
@@ -302,7 +299,7 @@ impl Training {
 }
 
 impl Parts {
-    fn new(database: &Database) -> Result<Self, TrainError> {
+    fn new(database: &Database) -> Result<Self, Fault> {
         let part = |part, name| match database.part(part) {
             rows if rows.is_empty() => Err(no_rows(name)),
             rows => Ok(rows),
@@ -315,8 +312,8 @@ impl Parts {
     }
 }
 
-fn no_rows(part: &str) -> TrainError {
-    failed(format!("the {part} part of the split has no rows; collect more geometries"))
+fn no_rows(part: &str) -> Fault {
+    fault!("the {part} part of the split has no rows; collect more geometries")
 }
 
 /// The card before training; the test errors are added at the end.
@@ -325,7 +322,7 @@ fn card(
     training: &[Row],
     scales: &Scales,
     config: &TrainingConfig,
-) -> Result<Card, TrainError> {
+) -> Result<Card, Fault> {
     let states = training.iter();
     let states = states.map(|row| (row.design, row.sample.deformation()));
     let domain = TrainingDomain::covering(states);
@@ -372,9 +369,9 @@ fn the_only(hashes: &BTreeSet<String>) -> Option<String> {
     }
 }
 
-fn export(networks: &Networks, card: &Card) -> Result<Surrogate, TrainError> {
+fn export(networks: &Networks, card: &Card) -> Result<Surrogate, Fault> {
     Surrogate::from_parts(layers(networks)?, card.clone())
-        .map_err(|error| failed(format!("the weights cannot be exported: {error}")))
+        .map_err(|error| fault!("the weights cannot be exported: {error}"))
 }
 
 /// Maximum norm of the gradient of one weight matrix or bias; larger gradients are scaled down to

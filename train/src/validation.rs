@@ -4,8 +4,12 @@
 use crate::config::{DAMAGE_WEIGHT, ENERGY_WEIGHT};
 use crate::samples::Scales;
 use dataset::{ComparedState, Row};
+use hinge::TrainingDomain;
+use std::array::from_fn;
+use std::iter::zip;
+use support::Point;
 use support::statistics::root_mean_square;
-use surrogate::{FitError, SpotCheck, Surrogate, TestErrors};
+use surrogate::{BinQuantity, ErrorBin, FitError, SpotCheck, Surrogate, TestErrors};
 
 /// Predictions of a surrogate with their targets, the values of the finite elements, one state a
 /// row.
@@ -39,19 +43,19 @@ impl Parity {
         let (designs, deformations): (Vec<_>, Vec<_>) =
             rows.iter().map(|row| (row.design, row.sample.deformation())).unzip();
         let predictions = surrogate.samples(&designs, &deformations);
-        let states = std::iter::zip(&predictions, rows)
+        let states = zip(&predictions, rows)
             .map(|(prediction, row)| ComparedState::new(prediction, &row.sample));
         Self { states: states.collect() }
     }
 
     /// [target, prediction] of the quantity `i` of [`dataset::COMPARED`] in every state.
-    pub fn points(&self, i: usize) -> impl Iterator<Item = [f64; 2]> {
+    pub fn points(&self, i: usize) -> impl Iterator<Item = Point> {
         self.states.iter().map(move |state| [state.reference[i], state.value[i]])
     }
 
     /// The errors by quantity.
     pub fn errors(&self) -> TestErrors {
-        let by_quantity = std::array::from_fn(|i| fit_error(self.points(i)));
+        let by_quantity = from_fn(|i| fit_error(self.points(i)));
         TestErrors::new(self.states.len(), by_quantity)
     }
 
@@ -59,17 +63,17 @@ impl Parity {
     /// three by the finite elements in its state, for the ligament widths of the states; `None`
     /// without a state under load.
     pub fn force_errors(&self, widths: impl Iterator<Item = f64>) -> Option<[f64; 3]> {
-        let errors: Vec<[f64; 3]> = std::iter::zip(&self.states, widths)
+        let errors: Vec<[f64; 3]> = zip(&self.states, widths)
             .filter_map(|(state, w_lig)| {
                 let forces = |of: [f64; 6]| [of[1], of[2], of[3] / w_lig];
                 let [value, reference] = [state.value, state.reference].map(forces);
                 let norm = reference.iter().map(|force| force * force).sum::<f64>().sqrt();
                 let error = |i: usize| (value[i] - reference[i]) / norm;
-                (norm > 0.0).then(|| std::array::from_fn(error))
+                (norm > 0.0).then(|| from_fn(error))
             })
             .collect();
         let rms = |i: usize| root_mean_square(errors.iter().map(|error| error[i]));
-        (!errors.is_empty()).then(|| std::array::from_fn(rms))
+        (!errors.is_empty()).then(|| from_fn(rms))
     }
 
     /// The states of the rows with these indices.
@@ -104,7 +108,7 @@ impl Parity {
     /// not determine the choice.
     pub(crate) fn network_errors(&self) -> [f64; 3] {
         let [w, f_a, f_s, m_theta, damage, damage_peak] =
-            std::array::from_fn(|i| limited_error(self.points(i)));
+            from_fn(|i| limited_error(self.points(i)));
         let potential = [w, f_a, f_s, m_theta].into_iter();
         let known: Vec<f64> = potential.filter(|error| !error.is_nan()).collect();
         let mean = match known.len() {
@@ -117,27 +121,27 @@ impl Parity {
 
 /// The root mean square error divided by the root mean square of the targets, each error being
 /// limited to the latter; NaN if no target is known and predicted, or all are zero.
-fn limited_error(points: impl Iterator<Item = [f64; 2]>) -> f64 {
-    let known: Vec<[f64; 2]> = known(points).filter(|[_, predicted]| !predicted.is_nan()).collect();
+fn limited_error(points: impl Iterator<Item = Point>) -> f64 {
+    let known: Vec<Point> = known(points).filter(|[_, predicted]| !predicted.is_nan()).collect();
     let target = root_mean_square(known.iter().map(|[target, _]| *target));
     let errors =
         known.iter().map(|[target_here, predicted]| (predicted - target_here).abs().min(target));
     if target > 0.0 { root_mean_square(errors) / target } else { f64::NAN }
 }
 
-fn rms_error(points: impl Iterator<Item = [f64; 2]>) -> f64 {
+fn rms_error(points: impl Iterator<Item = Point>) -> f64 {
     root_mean_square(known(points).map(|[target, predicted]| predicted - target))
 }
 
 /// The points whose target is known.
-fn known(points: impl Iterator<Item = [f64; 2]>) -> impl Iterator<Item = [f64; 2]> {
+fn known(points: impl Iterator<Item = Point>) -> impl Iterator<Item = Point> {
     points.filter(|[target, _]| !target.is_nan())
 }
 
 /// Errors of points [target, prediction] relative to the targets; unknown if no target is known,
 /// or all are zero.
-pub(crate) fn fit_error(points: impl Iterator<Item = [f64; 2]>) -> FitError {
-    let points: Vec<[f64; 2]> = known(points).collect();
+pub(crate) fn fit_error(points: impl Iterator<Item = Point>) -> FitError {
+    let points: Vec<Point> = known(points).collect();
     let target = root_mean_square(points.iter().map(|[target, _]| *target));
     let nonzero = points.iter().filter(|[target, _]| *target != 0.0);
     let mut relative: Vec<f64> =
@@ -147,6 +151,59 @@ pub(crate) fn fit_error(points: impl Iterator<Item = [f64; 2]>) -> FitError {
         Some(&median) => FitError { relative_rmse: rms_error(points.into_iter()) / target, median },
         None => FitError::unknown(),
     }
+}
+
+// Errors by bins: the accuracy of a surrogate over the training domain.
+
+/// Number of bins of each quantity, all of the same width.
+const BINS: usize = 5;
+
+/// Errors on `rows`, whose targets and predictions are `parity`, by compression, shear, rotation,
+/// ligament width, cut angle, hole if it is a feature, and distance from the edge of the domain.
+/// Bins without rows are omitted.
+pub(crate) fn error_bins(parity: &Parity, rows: &[Row], domain: &TrainingDomain) -> Vec<ErrorBin> {
+    let degrees = |range: Point| range.map(f64::to_degrees);
+    let [eta_a, eta_s, theta] = domain.bounds();
+    let quantities = [
+        (BinQuantity::EtaA, eta_a),
+        (BinQuantity::EtaS, eta_s),
+        (BinQuantity::ThetaDeg, degrees(theta)),
+        (BinQuantity::WLig, domain.w_lig),
+        (BinQuantity::AlphaDeg, degrees(domain.alpha)),
+        (BinQuantity::Edge, [0.0, 1.0]),
+    ];
+    let hole = domain.holes.map(|range| (BinQuantity::FilletRatio, range));
+    let mut bins = Vec::new();
+    for (quantity, [minimum, maximum]) in quantities.into_iter().chain(hole) {
+        let value = |Row { design, sample, .. }: &Row| match quantity {
+            BinQuantity::EtaA => domain.coordinates(design, &sample.deformation())[0],
+            BinQuantity::EtaS => domain.coordinates(design, &sample.deformation())[1],
+            BinQuantity::ThetaDeg => sample.theta.to_degrees(),
+            BinQuantity::WLig => design.w_lig,
+            BinQuantity::AlphaDeg => design.alpha.to_degrees(),
+            BinQuantity::FilletRatio => design.fillet_ratio,
+            BinQuantity::Edge => domain.depth(design, &sample.deformation()).max(0.0),
+        };
+        let width = (maximum - minimum) / BINS as f64;
+        for bin in 0..BINS {
+            let lower = minimum + bin as f64 * width;
+            let inside = |row: &Row| bin_of(value(row), minimum, width) == bin;
+            let indices: Vec<usize> = (0..rows.len()).filter(|&i| inside(&rows[i])).collect();
+            if !indices.is_empty() {
+                bins.push(ErrorBin {
+                    quantity,
+                    range: [lower, lower + width],
+                    errors: parity.of_rows(&indices).errors(),
+                });
+            }
+        }
+    }
+    bins
+}
+
+/// The bin of a value; values beyond the range belong to the first or last bin.
+fn bin_of(value: f64, minimum: f64, width: f64) -> usize {
+    (((value - minimum) / width).max(0.0) as usize).min(BINS - 1)
 }
 
 #[cfg(test)]
@@ -207,5 +264,42 @@ mod tests {
         assert!(limited_error(unpredicted.into_iter()).is_nan());
         assert!(fit_error(unpredicted.into_iter()).relative_rmse.is_nan());
         assert!(fit_error(unpredicted.into_iter()).median.is_nan());
+    }
+}
+
+#[cfg(test)]
+mod bins_tests {
+    use super::*;
+    use dataset::ComparedState;
+    use hinge::{HingeConstants, HingeSample};
+
+    fn row(w_lig: f64, theta: f64) -> Row {
+        let constants = HingeConstants::PAPER;
+        Row {
+            job: String::new(),
+            design: constants.hinge(w_lig, 1.5),
+            sample: HingeSample { theta, ..HingeSample::default() },
+            ..Row::default()
+        }
+    }
+
+    #[test]
+    fn every_row_is_in_exactly_one_bin_of_each_quantity() {
+        let rows = [row(5.0, 0.1), row(12.0, 0.5), row(25.0, 1.0)];
+        let state_of = |error: f64| ComparedState { value: [1.0 + error; 6], reference: [1.0; 6] };
+        let parity = Parity { states: [0.1, 0.2, 0.4].map(state_of).to_vec() };
+        let state = [[-1.0, 1.0], [-1.0, 1.0], [0.0, 1.0]];
+        let mut domain = TrainingDomain::from_box(state, [5.0, 25.0], [1.0, 2.0]);
+        domain.holes = Some([0.1, 0.3]);
+        let bins = error_bins(&parity, &rows, &domain);
+        for quantity in
+            ["eta_a", "eta_s", "theta_deg", "w_lig", "alpha_deg", "fillet_ratio", "edge"]
+        {
+            let of = bins.iter().filter(|bin| bin.quantity.to_string() == quantity);
+            assert_eq!(of.map(|bin| bin.errors.rows).sum::<usize>(), 3, "{quantity}");
+        }
+        let widest = bins.iter().rfind(|bin| bin.quantity == BinQuantity::WLig).unwrap();
+        assert_eq!(widest.range, [21.0, 25.0]);
+        assert!((widest.errors.energy.relative_rmse - 0.4).abs() < 1e-12);
     }
 }

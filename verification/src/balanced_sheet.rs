@@ -10,7 +10,7 @@
 //! finest one begins, and the difference between both is the error of the cheaper mesh.
 
 use crate::element_windows::{ElementWindows, UnsolvedHinge};
-use crate::verification_error::{VerificationError, refused};
+use crate::verification_error::VerificationError;
 use analysis::error_budget::ErrorBudget;
 use design::geometry::polygon::{bounds, distance};
 use design::hinge_law::{CorrectedLaw, Correction, HingeLaw, MissingForces, Order};
@@ -22,6 +22,7 @@ use mesher::Tier;
 use scene::Scene;
 use serde::Serialize;
 use std::sync::Arc;
+use support::refuse;
 
 /// Largest movement of a panel corner in a round, relative to the size of the deployed sheet, at
 /// which the iteration ends: a tenth of a millimetre in a metre.
@@ -106,7 +107,7 @@ pub fn balanced(
     let draft = windows.tier.draft().map(|tier| (tier, DRAFT_ROUNDS));
     let meshes: Vec<_> = draft.into_iter().chain([(windows.tier, rounds)]).collect();
     if rounds == 0 {
-        return Err(refused("at least one round is needed"));
+        refuse!("at least one round is needed");
     }
     let mut problem = scene.problem()?;
     let law = law_of(&mut problem)?.clone();
@@ -290,9 +291,9 @@ impl Iteration<'_> {
 fn law_of(problem: &mut DesignProblem) -> Result<&mut Arc<dyn HingeLaw>, VerificationError> {
     match &mut problem.model {
         Model::Equilibrium(mechanics) => Ok(&mut mechanics.law),
-        Model::Ideal { .. } => Err(refused(
-            "hinge paths need a hinge law with stiffness: the scene has level = \"pin\"",
-        )),
+        Model::Ideal { .. } => {
+            refuse!("hinge paths need a hinge law with stiffness: the scene has level = \"pin\"")
+        }
     }
 }
 

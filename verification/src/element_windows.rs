@@ -1,28 +1,23 @@
 //! The hinges of a deployed sheet, solved by finite elements along their paths in it.
 
-use crate::verification_error::{VerificationError, refused};
+use crate::verification_error::VerificationError;
 use dataset::Fidelity;
 use design::objective::design_problem::Deployment;
 use fe_driver::{DeformationPath, HingePath, SolveService, WindowProblem, WindowSolve};
 use hinge::{HingeDeformation, HingeSample, SheetMaterial};
 use mesher::Tier;
 use serde::Serialize;
-use std::fmt;
+use support::{Fault, fault};
 use surrogate::Surrogate;
 
 /// A hinge of a sheet that finite elements did not follow along its path.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, thiserror::Error)]
+#[error("hinge {hinge}: {reason}")]
 pub struct UnsolvedHinge {
     /// Number of the hinge.
     pub hinge: usize,
     /// Its window, why it was not solved, and the folder of its last attempt.
     pub reason: String,
-}
-
-impl fmt::Display for UnsolvedHinge {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        write!(f, "hinge {}: {}", self.hinge, self.reason)
-    }
 }
 
 /// Finite elements for the hinges of sheets.
@@ -57,7 +52,7 @@ impl ElementWindows<'_> {
         let solves = designs.map(|(hinge, design)| {
             let states = deployment.path.iter().map(|step| step.deformations[hinge]);
             let path = DeformationPath::through(&states.collect::<Vec<HingeDeformation>>());
-            let path = path.ok_or_else(|| refused(format!("hinge {hinge} has no states")))?;
+            let path = path.ok_or_else(|| fault!("hinge {hinge} has no states"))?;
             let problem = WindowProblem::new(HingePath { design, path }, material, self.tier);
             Ok::<_, VerificationError>(WindowSolve::new(problem, &versions))
         });
@@ -82,16 +77,13 @@ impl ElementWindows<'_> {
 
 /// The mesh tier to test weights on: `requested`, or the tier of the database they were trained on,
 /// or the finer tier that the database was corrected to.
-pub fn verification_tier(
-    requested: Option<Tier>,
-    surrogate: &Surrogate,
-) -> Result<Tier, VerificationError> {
+pub fn verification_tier(requested: Option<Tier>, surrogate: &Surrogate) -> Result<Tier, Fault> {
     let trained_on = &surrogate.card().tier;
     let own = || trained_on.parse().map(Fidelity::mesh).ok();
     requested.or_else(own).ok_or_else(|| {
-        refused(format!(
+        fault!(
             "the weights were trained on the tier `{trained_on}`, which is no mesh tier: pass the \
              tier to compare with as --tier"
-        ))
+        )
     })
 }

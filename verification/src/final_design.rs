@@ -15,7 +15,7 @@ use mesher::Tier;
 use scene::design_run::{BegunRun, Designed, Earlier, LEVELS, OnStep};
 use scene::{Level, Scene, SolvedHinge, SolvedHinges};
 use std::sync::atomic::AtomicBool;
-use support::file_error::FileError;
+use support::FileError;
 
 /// Maximum number of searches, each followed by a balance.
 const SEARCHES: usize = 3;

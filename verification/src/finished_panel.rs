@@ -3,6 +3,7 @@
 use design::geometry::polygon::{distance, edges};
 use design::sheet::cut_sheet::Sheet;
 use design::sheet::topology::HingeSite;
+use support::Point;
 
 /// Distance from the line of a cut over the width of its slit up to which an edge is at the cut.
 const AT_CUT: f64 = 0.75;
@@ -20,10 +21,10 @@ pub(crate) struct FinishedPanel {
 #[derive(Clone, Copy)]
 struct Edge {
     /// Where it begins before the cut (mm).
-    begin: [f64; 2],
+    begin: Point,
     /// A point of the finished edge (mm), and its direction.
-    on: [f64; 2],
-    direction: [f64; 2],
+    on: Point,
+    direction: Point,
     /// The side of the cell on whose line it is.
     side: Option<usize>,
 }
@@ -42,7 +43,7 @@ impl FinishedPanel {
             let edge = Edge::new(ends, 0.0);
             let on_side = |(side, reach): &&(Edge, f64)| {
                 let [along, _] = side.local(edge.direction, [0.0; 2]);
-                let off = |point: [f64; 2]| side.local(point, side.begin)[1].abs();
+                let off = |point: Point| side.local(point, side.begin)[1].abs();
                 along > 0.0 && off(ends.0) < *reach && off(ends.1) < *reach
             };
             let side = sides.iter().find(on_side);
@@ -73,7 +74,7 @@ impl FinishedPanel {
     }
 
     /// Where its edges meet, counter-clockwise (mm).
-    pub(crate) fn corners(&self) -> Vec<[f64; 2]> {
+    pub(crate) fn corners(&self) -> Vec<Point> {
         self.pairs().map(|(one, next)| one.meets(next, FARTHEST * self.slit)).collect()
     }
 
@@ -85,7 +86,7 @@ impl FinishedPanel {
 
     /// A point of the panel; if it lies on the line of a cut, the nearest point of the finished
     /// edge.
-    pub(crate) fn nearest(&self, point: [f64; 2]) -> [f64; 2] {
+    pub(crate) fn nearest(&self, point: Point) -> Point {
         let corners = self.corners();
         edges(&corners).fold(point, |at, ends| {
             let edge = Edge::new(ends, 0.0);
@@ -98,19 +99,19 @@ impl FinishedPanel {
 
 impl Edge {
     /// The edge between two points, moved inwards.
-    fn new((from, to): ([f64; 2], [f64; 2]), inside: f64) -> Self {
+    fn new((from, to): (Point, Point), inside: f64) -> Self {
         let length = distance(from, to);
         let direction = [0, 1].map(|axis| (to[axis] - from[axis]) / length);
         let edge = Self { begin: from, on: from, direction, side: None };
         Self { on: edge.inwards(from, inside), ..edge }
     }
 
-    fn inwards(&self, [x, y]: [f64; 2], by: f64) -> [f64; 2] {
+    fn inwards(&self, [x, y]: Point, by: f64) -> Point {
         [x - by * self.direction[1], y + by * self.direction[0]]
     }
 
     /// A point seen from another one: along the edge and inwards.
-    fn local(&self, to: [f64; 2], from: [f64; 2]) -> [f64; 2] {
+    fn local(&self, to: Point, from: Point) -> Point {
         let ([c, s], [x, y]) = (self.direction, [to[0] - from[0], to[1] - from[1]]);
         [c * x + s * y, c * y - s * x]
     }
@@ -121,7 +122,7 @@ impl Edge {
 
     /// The corner between this edge and the next: their intersection, or if that is farther than
     /// `most` from the corner before the cut, the point of the moved edge nearest to that.
-    fn meets(&self, next: &Self, most: f64) -> [f64; 2] {
+    fn meets(&self, next: &Self, most: f64) -> Point {
         let (from, to) = (self.local(next.on, self.on)[1], self.local(next.direction, [0.0; 2])[1]);
         let met = [0, 1].map(|axis| next.on[axis] - from / to * next.direction[axis]);
         let moved = if self.side.is_some() { self } else { next };

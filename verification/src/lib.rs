@@ -46,8 +46,6 @@
 #![cfg_attr(not(test), warn(unreachable_pub))]
 
 mod balanced_sheet;
-mod compared_states;
-mod distillation_states;
 mod element_windows;
 mod final_design;
 mod finished_panel;
@@ -57,22 +55,21 @@ mod sheet_check;
 mod sheet_errors;
 mod sheet_page;
 mod sheet_task;
-mod spot_check;
 mod verification_error;
 mod whole_sheet;
 
 pub use balanced_sheet::{
     BALANCED, BALANCED_FORCES, BalanceEnd, Balanced, Round, balanced, movements, size,
 };
-pub use compared_states::{SCALE, spread_table};
-pub use distillation_states::distillation_states;
 pub use element_windows::{ElementWindows, UnsolvedHinge, verification_tier};
 pub use final_design::{final_design, most_cpu_seconds};
 pub use learning::{Accuracy, Learning, LearningEnd, LearningRound, LearningTask};
-pub use rows::{collected, collected_windows, rows};
+pub use rows::{
+    SCALE, SpotStates, collected, collected_windows, distillation_states, rows, spot_check,
+    spread_table,
+};
 pub use sheet_check::{HingeCheck, PanelCheck, SheetCheck, StateCheck};
 pub use sheet_errors::SheetErrors;
 pub use sheet_task::SheetTask;
-pub use spot_check::{SpotStates, spot_check};
 pub use verification_error::{VerificationError, every_ray_failed};
 pub use whole_sheet::{SheetCost, usual_sheet_tier};

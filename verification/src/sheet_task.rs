@@ -1,7 +1,7 @@
 //! A whole sheet by finite elements: its solve, and what the hinge law predicts of it.
 
 use crate::sheet_check::{HingeCheck, PanelCheck, SheetCheck, StateCheck, findings};
-use crate::verification_error::{VerificationError, refused};
+use crate::verification_error::VerificationError;
 use crate::whole_sheet::{no_posture, sheet_problem, with_support};
 use analysis::actuation_curve::ActuationCurve;
 use analysis::flanks::flank_gap;
@@ -18,7 +18,9 @@ use mesher::{Panels, Tier};
 use scene::placement::seen_in;
 use scene::{Posture, Scene};
 use std::array::from_fn;
+use std::iter::zip;
 use support::statistics::rms_and_maximum;
+use support::{Point, fault};
 
 /// Tilt of a panel up to which its flanks are measured in the plane (rad).
 const UPRIGHT: f64 = 0.02;
@@ -37,7 +39,7 @@ pub struct SheetTask {
     /// Whether the flanks of its cuts touch; `false` unless set.
     pub contact: bool,
     /// Displacement and load by the law, before the loads and at every load step.
-    curve: Vec<[f64; 2]>,
+    curve: Vec<Point>,
     /// The plate out of its plane by the law at every load step; `None` where the law has none.
     out_of_plane: Option<Vec<OutOfPlane>>,
 }
@@ -46,7 +48,7 @@ pub struct SheetTask {
 struct LawState {
     configuration: Configuration,
     /// Displacement (mm) and load (N).
-    load_point: [f64; 2],
+    load_point: Point,
     /// The margin against leaving the plane at the next load step, and the largest tilt (rad).
     margin: Option<f64>,
     tilt: Option<f64>,
@@ -65,7 +67,7 @@ impl SheetTask {
         let posture = scene.config.posture.map(|posture| posture.kind);
         let problem = scene.problem()?;
         let no_loads =
-            || refused("whole sheets need supports and loads: the scene has level = \"pin\"");
+            || fault!("whole sheets need supports and loads: the scene has level = \"pin\"");
         let mechanics = problem.model.mechanics().ok_or_else(no_loads)?;
         let deployment = problem.deploy(design)?;
         deployment.at_full_load()?;
@@ -155,7 +157,7 @@ impl SheetTask {
         let flat = vec![[0.0; 3]; self.deployment.sheet.panels.len()];
         let before = loaded[..next - 1].last().or(weighed.last());
         let from = before.map_or(&flat, |step| &step.configuration);
-        let configuration = std::iter::zip(from, &loaded[next - 1].configuration);
+        let configuration = zip(from, &loaded[next - 1].configuration);
         let plane = self.out_of_plane.as_ref().map(|steps| &steps[weighed.len()..]);
         let tilt = |steps: &[OutOfPlane]| {
             let from = next.checked_sub(2).map_or(Some(0.0), |step| steps[step].tilt());
@@ -176,10 +178,10 @@ impl SheetTask {
     fn corner_errors(&self, configuration: &[[f64; 3]], state: &SheetState) -> Vec<Vec<f64>> {
         let sheet = &self.deployment.sheet;
         let deployed = deployed_boundaries(sheet, configuration);
-        let panels = std::iter::zip(&sheet.panels, &state.panels).zip(&deployed);
+        let panels = zip(&sheet.panels, &state.panels).zip(&deployed);
         let errors = panels.map(|((panel, moved), deployed)| {
-            let corners = std::iter::zip(&panel.boundary, deployed);
-            let error = |(flat, [u, v]): (&[f64; 2], &[f64; 2])| {
+            let corners = zip(&panel.boundary, deployed);
+            let error = |(flat, [u, v]): (&Point, &Point)| {
                 let [x, y, z] = moved.moved(*flat);
                 (x - u).hypot(y - v).hypot(z)
             };
@@ -224,11 +226,11 @@ impl SheetTask {
             let [u, v, _] = moved.moved(panel.reference);
             [u - x, v - y, moved.turn()]
         };
-        std::iter::zip(&self.deployment.sheet.panels, &state.panels).map(motion).collect()
+        zip(&self.deployment.sheet.panels, &state.panels).map(motion).collect()
     }
 
     /// How much of the target is seen.
-    fn seen(&self, state: &SheetState) -> [f64; 2] {
+    fn seen(&self, state: &SheetState) -> Point {
         let LawState { configuration, .. } = self.by_law(state.fraction);
         [configuration, self.in_plane(state)]
             .map(|motions| seen_in(&self.scene, &self.deployment, &motions))
@@ -257,8 +259,8 @@ impl SheetTask {
         let sheet = &self.deployment.sheet;
         let states = hinge_deformations(sheet, &self.in_plane(state));
         let regime = |design: &HingeDesign| self.scene.material.regime(design.w_lig);
-        let hinges = std::iter::zip(&sheet.hinges, sheet.designs());
-        let gaps = std::iter::zip(hinges, states).map(|((hinge, design), state)| {
+        let hinges = zip(&sheet.hinges, sheet.designs());
+        let gaps = zip(hinges, states).map(|((hinge, design), state)| {
             // The cut ends outside of the window, at the other end of its edge of panel A.
             let (panel, corner) = hinge.site.a;
             let corners = sheet.panels[panel].corners;
@@ -295,7 +297,7 @@ impl SheetTask {
             ],
         });
         let errors = self.corner_errors(&configuration, last);
-        let panels = std::iter::zip(&last.panels, errors).enumerate();
+        let panels = zip(&last.panels, errors).enumerate();
         let panels = panels.map(|(number, (panel, errors))| PanelCheck {
             panel: number,
             tilt_deg: panel.tilt().to_degrees(),

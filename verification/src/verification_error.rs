@@ -2,10 +2,9 @@
 
 use dataset::DatasetError;
 use design::objective::design_problem::DesignError;
-use fe_driver::{CampaignError, SolveListError};
+use fe_driver::SolveListError;
 use std::path::Path;
-use support::fault::Fault;
-use support::file_error::FileError;
+use support::{Fault, FileError, fault};
 
 /// Why a task has no result.
 #[derive(Debug, thiserror::Error)]
@@ -13,8 +12,6 @@ use support::file_error::FileError;
 pub enum VerificationError {
     #[error(transparent)]
     Solve(#[from] SolveListError),
-    #[error(transparent)]
-    Campaign(#[from] CampaignError),
     #[error(transparent)]
     Dataset(#[from] DatasetError),
     #[error(transparent)]
@@ -27,14 +24,10 @@ pub enum VerificationError {
     Fault(#[from] Fault),
 }
 
-/// The error with a message.
-pub(crate) fn refused(what: impl Into<Fault>) -> VerificationError {
-    what.into().into()
-}
-
 /// The error of a campaign in a folder none of whose rays has rows.
 pub fn every_ray_failed(folder: &Path) -> Fault {
-    let jobs = folder.join("jobs");
-    let what = format!("every ray failed: read a job's log in {}", jobs.display());
-    Fault::from(what + ", fix the cause, then run `kirigami campaign run --retry`")
+    fault!(
+        "every ray failed: read a job's log in {}, fix the cause, then run `kirigami campaign run --retry`",
+        folder.join("jobs").display()
+    )
 }

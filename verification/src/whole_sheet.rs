@@ -1,7 +1,7 @@
 //! A designed sheet as a finite-element problem.
 
 use crate::finished_panel::FinishedPanel;
-use crate::verification_error::{VerificationError, refused};
+use crate::verification_error::VerificationError;
 use design::sheet::cut_sheet::{AttachmentPoint, PanelPoint, Sheet};
 use design::sheet::hinge_window::Window;
 use design::sheet::topology::PanelCorner;
@@ -11,7 +11,8 @@ use mesher::{
     Frame, Imperfection, PanelShape, Panels, PlacedWindow, PlaneRecipe, SheetMesh, SheetShape, Tier,
 };
 use scene::{Posture, PostureConfig, Scene, SupportKind};
-use support::fault::fault;
+use std::iter::zip;
+use support::{Fault, fault, refuse};
 
 /// Size of the elements of panels over r_win.
 const ELEMENT_SIZE: f64 = 0.8;
@@ -32,28 +33,25 @@ pub fn usual_sheet_tier(scene: &Scene) -> Tier {
     }
 }
 
-pub(crate) fn no_posture() -> VerificationError {
-    refused(
+pub(crate) fn no_posture() -> Fault {
+    fault!(
         "the scene has no [posture]: state how the sheet is held out of its plane, such as kind = \
-         \"held-flat\", or pass --support",
+         \"held-flat\", or pass --support"
     )
 }
 
 /// The scene with another support of its panels, as its model must know it.
-pub(crate) fn with_support(
-    scene: &Scene,
-    support: Option<Posture>,
-) -> Result<Scene, VerificationError> {
+pub(crate) fn with_support(scene: &Scene, support: Option<Posture>) -> Result<Scene, Fault> {
     let mut scene = scene.clone();
     match (support, &mut scene.config.posture) {
         (None, None) => return Err(no_posture()),
         // What holds it flat does not change its weight.
         (None | Some(Posture::HeldFlat), Some(_)) => {}
         (Some(Posture::Hanging), posture) if posture.and_then(|posture| posture.down).is_none() => {
-            return Err(refused(
+            refuse!(
                 "the scene does not state in which direction its sheet hangs: set posture.kind = \
-                 \"hanging\" and posture.down",
-            ));
+                 \"hanging\" and posture.down"
+            );
         }
         (Some(kind), Some(posture)) => posture.kind = kind,
         (Some(kind), posture @ None) => {
@@ -124,10 +122,10 @@ fn pulled(scene: &Scene, sheet: &Sheet) -> Result<Vec<Pulled>, VerificationError
         loads[load.panel][load.dof.index()] += load.value;
     }
     if loads.iter().any(|[.., couple]| *couple != 0.0) {
-        return Err(refused(
+        refuse!(
             "couples on panels have no counterpart in a whole sheet of finite elements, whose \
-             panels bend: pull panels by forces",
-        ));
+             panels bend: pull panels by forces"
+        );
     }
     let forces = loads.into_iter().enumerate();
     let forces = forces.filter(|(_, [x, y, _])| x.hypot(*y) > 0.0);
@@ -142,12 +140,13 @@ fn pulled(scene: &Scene, sheet: &Sheet) -> Result<Vec<Pulled>, VerificationError
 /// The supports of the scene.
 fn held(scene: &Scene, sheet: &Sheet) -> Result<Vec<Held>, VerificationError> {
     let attachments = scene.actuation().attachments;
-    let supports = std::iter::zip(&scene.config.supports, &attachments);
+    let supports = zip(&scene.config.supports, &attachments);
     let held = supports.map(|(support, attachment)| {
         if support.rotation_deg != 0.0 {
-            let what =
-                "a support that turns has no counterpart in a whole sheet of finite elements";
-            return Err(fault(&attachment.name, what, "").into());
+            refuse!(
+                "{}: a support that turns has no counterpart in a whole sheet of finite elements",
+                attachment.name
+            );
         }
         let holds = support.kind.holds();
         Ok(Held {
@@ -189,12 +188,12 @@ pub(crate) fn meshed_radii(sheet: &Sheet) -> Result<Vec<f64>, VerificationError>
     let mut ratio = r_win / widths().fold(f64::INFINITY, f64::min);
     loop {
         let radii: Vec<f64> = widths().map(|w_lig| r_win.min(ratio * w_lig)).collect();
-        let windows: Vec<Window> = std::iter::zip(Window::of_sheet(sheet), &radii)
+        let windows: Vec<Window> = zip(Window::of_sheet(sheet), &radii)
             .map(|(window, radius)| Window { radius: APART * radius, ..window })
             .collect();
         let apart = (windows.iter().enumerate())
             .all(|(h, one)| windows[..h].iter().all(|other| !one.overlaps(other)));
-        let inside = std::iter::zip(&windows, &sheet.hinges).all(|(window, hinge)| {
+        let inside = zip(&windows, &sheet.hinges).all(|(window, hinge)| {
             let [a, b] = [hinge.panel_a(), hinge.panel_b()].map(|k| &sheet.panels[k]);
             window.within(a, b)
         });
@@ -202,11 +201,11 @@ pub(crate) fn meshed_radii(sheet: &Sheet) -> Result<Vec<f64>, VerificationError>
             return Ok(radii);
         }
         if ratio <= LEAST_RADIUS {
-            return Err(refused(format!(
+            refuse!(
                 "the panels are too small for windows of {:.1} mm radius, the smallest that are \
                  meshed: use larger panels or narrower ligaments",
                 radii.into_iter().fold(f64::INFINITY, f64::min)
-            )));
+            );
         }
         ratio = (SHRINK * ratio).max(LEAST_RADIUS);
     }
@@ -220,23 +219,24 @@ fn sheet_shape(
     model: Panels,
 ) -> Result<SheetShape, VerificationError> {
     let PlaneRecipe::Structured(plane) = tier.recipe().plane else {
-        return Err(refused(format!(
+        refuse!(
             "the tier {tier} has no structured mesh: whole sheets are meshed with tiny, small, \
              default, fine or reference"
-        )));
+        );
     };
     let radii = meshed_radii(sheet)?;
     let smallest = radii.iter().copied().fold(f64::INFINITY, f64::min);
-    let windows = std::iter::zip(Window::of_sheet(sheet), &radii);
+    let windows = zip(Window::of_sheet(sheet), &radii);
     let finished: Vec<_> =
         (0..sheet.panels.len()).map(|panel| FinishedPanel::new(sheet, panel)).collect();
     let placed = (sheet.hinges.iter().zip(sheet.designs())).zip(windows).map(
         |((hinge, design), (window, radius))| {
             let joined = |(panel, corner): PanelCorner| {
                 let cut_off = || {
-                    let what = format!("its corner {corner}, where it has a hinge, is trimmed");
-                    fault(format!("panel {panel}"), what, "choose another shape in [cells]")
-                };
+    fault!(
+        "panel {panel}: its corner {corner}, where it has a hinge, is trimmed: choose another shape in [cells]"
+    )
+};
                 let number = finished[panel].number_of(corner).ok_or_else(cut_off)?;
                 Ok::<_, VerificationError>((panel, number))
             };

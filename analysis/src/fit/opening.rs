@@ -21,7 +21,7 @@ pub fn safe_opening(surrogate: &Surrogate, w_lig: f64, most: f64) -> f64 {
     let bears = |theta: f64| {
         [least, FRAC_PI_2].into_iter().all(|alpha| {
             let (design, state) = free_turn(surrogate, w_lig, alpha, theta);
-            let damage = surrogate.damage_values(&[design], &[state]);
+            let damage = surrogate.damage(&[design], &[state], false);
             let safe = |peak: Option<f64>| peak.is_none_or(|peak| peak <= SAFE_PEAK);
             surrogate.domain().contains(&design, &state)
                 && damage.iter().all(|damage| safe(damage.d_peak))
@@ -38,7 +38,7 @@ pub fn safe_opening(surrogate: &Surrogate, w_lig: f64, most: f64) -> f64 {
 /// thickness of the weights) that turn freely by `theta` (rad) at a right angle.
 pub fn damage_of_turn(surrogate: &Surrogate, w_lig: f64, theta: f64) -> f64 {
     let (design, state) = free_turn(surrogate, w_lig, FRAC_PI_2, theta);
-    let damage = surrogate.damage_values(&[design], &[state]);
+    let damage = surrogate.damage(&[design], &[state], false);
     damage.iter().map(|damage| (damage.d / surrogate.damage_scale()).powi(2)).sum()
 }
 

@@ -2,13 +2,14 @@
 //! once.
 
 use crate::{failure::Unfinished, output_file, progress::Progress};
-use ::train::{Start, TrainError, Trained, Training, TrainingConfig, TrainingData};
+use ::train::{Start, Trained, Training, TrainingConfig, TrainingData};
 use anyhow::{Result, bail};
 use std::{
     path::Path,
     sync::atomic::{AtomicBool, Ordering},
     time::{Duration, Instant},
 };
+use support::Fault;
 use surrogate::{Card, Surrogate};
 
 /// Maximum training time that is lost if the process is killed.
@@ -79,7 +80,7 @@ pub(super) fn continued_fit(
         return fit(first);
     }
     match fit(Start::State { state, pretrained }) {
-        Err(error) if discard && error.is::<TrainError>() => fit(first),
+        Err(error) if discard && error.is::<Fault>() => fit(first),
         fitted => fitted,
     }
 }

@@ -19,19 +19,24 @@
 
 use crate::{
     equilibrium::{
-        corrector::Branch, hinged_sheet::HingedSheet, load_step::LoadStep, potential::PathStage,
-        refined_solve::refined_solve, solver::EquilibriumSolver, weight::add_weight_gradient,
+        hinged_sheet::HingedSheet,
+        load_step::LoadStep,
+        potential::{Branch, PathStage},
+        refined_solve::refined_solve,
+        solver::EquilibriumSolver,
+        weight::add_weight_gradient,
     },
-    geometry::plane::{add, complex},
     hinge_law::{HingeGradient, Order},
     sheet::{
         cut_sheet::SheetGradient,
-        kinematics::{HingeGeometryGradient, HingeMotion},
-        panel_vectors::{add_at_hinge, at_hinge},
+        kinematics::{
+            HingeGeometryGradient, HingeMotion, Motion, add_at_hinge, add_motions, at_hinge,
+        },
     },
 };
 use std::borrow::Cow;
-use support::vectors::{self, dot};
+use std::iter::zip;
+use support::vectors::dot;
 
 /// Backward error of an adjoint solve above which the tangent is considered singular.
 pub(crate) const SINGULAR: f64 = 1e-6;
@@ -51,22 +56,22 @@ pub(crate) struct PathGradient<'a> {
     /// Gradient in the load factor of the last load step; read under displacement control only.
     pub by_load_factor: f64,
     /// Gradient in the last configuration.
-    pub by_last: Vec<[f64; 3]>,
+    pub by_last: Vec<Motion>,
     /// Gradient in the forces (F_x, F_y, M) of the supports in the last state; zero at free degrees
     /// of freedom. `None` if it depends on none.
-    pub by_reactions: Option<Vec<[f64; 3]>>,
+    pub by_reactions: Option<Vec<Motion>>,
 }
 
 /// Results of the adjoint other than the gradient in the sheet.
 pub(crate) struct AdjointSums {
     /// Gradient with respect to (F_x, F_y, M) of every panel at full load.
-    pub loads: Vec<[f64; 3]>,
+    pub loads: Vec<Motion>,
     /// Gradient with respect to (k_a, k_s, k_theta) of every hinge; zero for a law without such
     /// constants.
     pub constants: Vec<[f64; 3]>,
     /// lambda of the last state, a virtual motion of every panel: the function changes by minus the
     /// work on it of an additional force of the hinges.
-    pub virtual_motion: Vec<[f64; 3]>,
+    pub virtual_motion: Vec<Motion>,
     /// Maximum componentwise backward error of the solves.
     pub residual: f64,
 }
@@ -89,7 +94,7 @@ pub(crate) fn adjoint(
         virtual_motion: Vec::new(),
         residual: 0.0,
     };
-    for (i, (step, mut by_q)) in std::iter::zip(path, by_configurations).enumerate() {
+    for (i, (step, mut by_q)) in zip(path, by_configurations).enumerate() {
         let is_last = i + 1 == path.len();
         if !is_last && by_states.iter().all(|hinge| hinge[i] == HingeGradient::default()) {
             continue;
@@ -117,14 +122,10 @@ pub(crate) fn adjoint(
         if let Some(held) = &held {
             add_motions(&mut lambda, &held.motion, 1.0);
         }
-        for (sum, lambda) in std::iter::zip(&mut sums.loads, &lambda) {
-            (0..3).for_each(|d| sum[d] += step.load_factor * lambda[d]);
-        }
+        add_motions(&mut sums.loads, &lambda, step.load_factor);
         if let Some(stroke) = stroke {
             let by_loads = stroke.by_loads(&solver.loads, &step.configuration);
-            for (sum, by_load) in std::iter::zip(&mut sums.loads, by_loads) {
-                (0..3).for_each(|d| sum[d] -= solution.mu * by_load[d]);
-            }
+            add_motions(&mut sums.loads, &by_loads, -solution.mu);
         }
         let weight = solver.weight.map(|component| step.weight * component);
         let configuration = &step.configuration;
@@ -161,8 +162,8 @@ pub(crate) fn adjoint(
 
 /// The virtual motion of the supports, and the forces that resist it.
 struct HeldMotion {
-    motion: Vec<[f64; 3]>,
-    resistance: Vec<[f64; 3]>,
+    motion: Vec<Motion>,
+    resistance: Vec<Motion>,
 }
 
 /// The virtual motion of the supports for a function with the given gradient in their forces, minus
@@ -171,18 +172,14 @@ fn held_motion(
     solver: &EquilibriumSolver,
     sheet: HingedSheet,
     step: &LoadStep,
-    by_reactions: &[[f64; 3]],
+    by_reactions: &[Motion],
 ) -> HeldMotion {
     let mut motion = vec![[0.0; 3]; by_reactions.len()];
     add_motions(&mut motion, by_reactions, -1.0);
-    let potential = Branch::new(solver, sheet, PathStage::Actuation).potential(1.0);
-    let state = potential.state(step.configuration.clone());
+    let branch = Branch::new(solver, sheet, PathStage::Actuation);
+    let state = branch.state(1.0, step.configuration.clone(), Order::Tangent);
     let state = state.expect("the energy of an equilibrium is finite");
-    HeldMotion { resistance: potential.resistance(&state, &motion), motion }
-}
-
-fn add_motions(sum: &mut [[f64; 3]], motion: &[[f64; 3]], factor: f64) {
-    vectors::add(sum.as_flattened_mut(), motion.as_flattened(), factor);
+    HeldMotion { resistance: branch.resistance(&state, &motion), motion }
 }
 
 fn add_geometry(
@@ -192,9 +189,8 @@ fn add_geometry(
     gradient: &HingeGeometryGradient,
     sign: f64,
 ) {
-    let add_point = |sum: &mut [f64; 2], point| add(sum, sign * complex(point));
-    add_point(&mut by_sheet.attachments[hinge], gradient.attachment);
-    add_point(&mut by_sheet.references[a], gradient.reference_a);
-    add_point(&mut by_sheet.references[b], gradient.reference_b);
+    by_sheet.attachments[hinge] += sign * gradient.attachment;
+    by_sheet.references[a] += sign * gradient.reference_a;
+    by_sheet.references[b] += sign * gradient.reference_b;
     by_sheet.frame_angles[hinge] += sign * gradient.frame_angle;
 }

@@ -15,12 +15,12 @@
 
 use crate::{
     equilibrium::{
-        corrector::{Branch, Corrected, Point},
+        corrector::{Corrected, Waypoint},
         displacement_control::HeldFactor,
         hinged_sheet::HingedSheet,
         load_step::DescentEnd,
         newton::{Failure, Minimum},
-        potential::{PathStage, PotentialState, moved},
+        potential::{Branch, PathStage, PotentialState, moved},
         predictor::{PathArc, PathPoint, bisected},
         solver::EquilibriumSolver,
     },
@@ -60,7 +60,7 @@ pub(crate) const LEAP: f64 = 0.03;
 /// A path up to its last point.
 pub(crate) struct Follower<'a> {
     pub branch: Branch<'a>,
-    pub last: Point,
+    pub last: Waypoint,
     /// The increment that ends in `last`; `None` at the beginning of a branch.
     pub arc: Option<PathArc>,
     /// Ratio of lengths by the rates at the two ends of the arc.
@@ -87,14 +87,12 @@ impl<'a> Follower<'a> {
         start: Configuration,
     ) -> Option<Self> {
         let mut branch = Branch::new(solver, sheet, stage);
-        let potential = branch.potential(0.0);
-        let state = potential.state(start.clone())?;
-        let position = PathPoint { at: 0.0, configuration: start, forces: state.forces() };
-        let (_, factor) = branch.factor(&potential, &state);
-        let stable = factor.filter(HeldFactor::is_stable);
+        let state = branch.state(0.0, start, Order::Tangent)?;
+        let position = state.position();
+        let stable = branch.factorised(&state).factor.filter(HeldFactor::is_stable);
         let mut follower = Self {
             branch,
-            last: Point::still(position.clone()),
+            last: Waypoint::still(position.clone()),
             arc: None,
             stretch: 1.0,
             length: FIRST,
@@ -104,11 +102,11 @@ impl<'a> Follower<'a> {
             jumped: (f64::NEG_INFINITY, 0),
         };
         let begin = match stable {
-            Some(factor) => Some(follower.branch.exact(0.0, state, factor)),
+            Some(factor) => Some(follower.branch.exact(state, factor)),
             None => follower.branch.settled(position.clone()).ok(),
         };
         if let Some(begin) = begin {
-            let moved = follower.branch.distance(&begin.state, &begin.position, &position);
+            let moved = follower.branch.distance(&begin.state, &position);
             follower.jumps = usize::from(moved > LEAP);
             follower.restart(begin);
         }
@@ -240,7 +238,7 @@ impl<'a> Follower<'a> {
 
     /// The arc from the last point to another, and the ratio of lengths by the rates at its two
     /// ends.
-    fn arc_to(&self, point: &Point) -> (PathArc, f64) {
+    fn arc_to(&self, point: &Waypoint) -> (PathArc, f64) {
         let last = &self.last;
         let product = |position: &PathPoint| {
             (self.branch).product(&last.rate.configuration, &position.configuration)
@@ -259,7 +257,7 @@ impl<'a> Follower<'a> {
         (arc, stretch)
     }
 
-    fn accept(&mut self, point: Point, (arc, stretch): (PathArc, f64), next: f64) {
+    fn accept(&mut self, point: Waypoint, (arc, stretch): (PathArc, f64), next: f64) {
         let left = |(distance, resolution)| ((distance - arc.length) / stretch, resolution);
         self.unstable = self.unstable.map(left).filter(|(distance, _)| *distance > 0.0);
         let before = std::mem::replace(&mut self.last, point);
@@ -273,7 +271,7 @@ impl<'a> Follower<'a> {
 
     /// The jump that dead loads cause at the end of the branch; `beyond` is the unstable point next
     /// to it.
-    fn jump(&mut self, beyond: Point, fold: bool) -> Option<()> {
+    fn jump(&mut self, beyond: Waypoint, fold: bool) -> Option<()> {
         let start = if fold { self.beyond_limit_point(&beyond) } else { beyond.position };
         let start = self.step_past_returns(start);
         self.restart_on_stable_branch(start, fold).ok()
@@ -287,7 +285,7 @@ impl<'a> Follower<'a> {
         limit_point: bool,
     ) -> Result<(), Failure> {
         let landed = self.branch.settled(start)?;
-        let moved = (self.branch).distance(&landed.state, &landed.position, &self.last.position);
+        let moved = self.branch.distance(&landed.state, &self.last.position);
         self.jumps += usize::from(limit_point || moved > LEAP);
         self.restart(landed);
         Ok(())
@@ -296,7 +294,7 @@ impl<'a> Follower<'a> {
     /// A position at the load of the limit point, past it: there the unstable equilibrium is the
     /// ridge of the energy, from which the sheet moves away. Nearer to the limit point if panels
     /// overlap.
-    fn beyond_limit_point(&self, beyond: &Point) -> PathPoint {
+    fn beyond_limit_point(&self, beyond: &Waypoint) -> PathPoint {
         let (arc, _) = self.arc_to(beyond);
         let top = bisected(0.0, arc.length, |length| arc.slope(length) > 0.0);
         let at = arc.at(top).max(self.last.position.at);
@@ -306,7 +304,7 @@ impl<'a> Follower<'a> {
             self.branch.hold(&mut position, &self.last.position);
             position
         });
-        let finite = |position: &PathPoint| self.branch.state(position, Order::Forces).is_some();
+        let finite = |position: &PathPoint| self.branch.state_at(position, Order::Forces).is_some();
         let found = positions.iter().position(finite).unwrap_or(0);
         positions.swap(0, found);
         let [position, ..] = positions;
@@ -341,29 +339,26 @@ impl<'a> Follower<'a> {
 
 impl Branch<'_> {
     /// The distance of the path from the middle of an arc, by factors of a tangent near its end.
-    fn midpoint_error(&self, arc: &PathArc, point: &Point) -> f64 {
+    fn midpoint_error(&self, arc: &PathArc, point: &Waypoint) -> f64 {
         let middle = arc.position(0.5 * arc.length);
-        let potential = self.potential(middle.at);
-        potential
-            .state_up_to(middle.configuration, Order::Forces)
-            .zip(point.factor.as_ref())
-            .map_or(f64::INFINITY, |(state, factor)| {
+        self.state_at(&middle, Order::Forces).zip(point.factor.as_ref()).map_or(
+            f64::INFINITY,
+            |(state, factor)| {
                 let direct = self.direct(&state, factor);
                 let rate = &arc.to_rate.configuration;
                 let (motion, _) = self.in_plane(&direct, rate, &arc.to_rate);
-                potential.length(&state, &motion)
-            })
+                self.length(&state, &motion)
+            },
+        )
     }
 
     /// Whether a corrected position is stable. If the tangent near it is not, its own decides.
     fn is_stable(&mut self, corrected: &mut Corrected) -> bool {
         if !corrected.factor.is_stable() {
-            let PathPoint { at, configuration, .. } = corrected.position.clone();
-            let potential = self.potential(at);
-            if let Some(state) = potential.state(configuration)
-                && let (_, Some(factor)) = self.factor(&potential, &state)
+            if let Some(state) = self.state_at(&corrected.position, Order::Tangent)
+                && let Some(factor) = self.factorised(&state).factor
             {
-                *corrected = Corrected { error: corrected.error, ..self.exact(at, state, factor) };
+                *corrected = Corrected { error: corrected.error, ..self.exact(state, factor) };
             }
         }
         corrected.factor.is_stable()
@@ -371,22 +366,18 @@ impl Branch<'_> {
 
     /// The stable equilibrium that is reached downhill from a position at constant load.
     pub(crate) fn settled(&mut self, start: PathPoint) -> Result<Corrected, Failure> {
-        let Minimum { state, factor, .. } = self.minimum(&start)?;
-        match factor.filter(HeldFactor::is_stable) {
-            Some(factor) => Ok(self.exact(start.at, state, factor)),
+        let Minimum { state, tangent } = self.minimum(&start)?;
+        match tangent.factor.filter(HeldFactor::is_stable) {
+            Some(factor) => Ok(self.exact(state, factor)),
             None => Err(Failure { residual: state.residual, end: DescentEnd::Stagnated }),
         }
     }
 
     /// An equilibrium with the factors of its own tangent.
-    fn exact(&self, at: f64, state: PotentialState, factor: HeldFactor) -> Corrected {
+    fn exact(&self, state: PotentialState, factor: HeldFactor) -> Corrected {
         Corrected {
-            position: PathPoint {
-                at,
-                configuration: state.configuration.clone(),
-                forces: state.forces(),
-            },
-            rate: self.rate(&self.potential(at), &state, &factor),
+            position: state.position(),
+            rate: self.rate(&state, &factor),
             state,
             factor,
             error: 0.0,
@@ -402,17 +393,10 @@ impl Branch<'_> {
         }
     }
 
-    /// The minimum of the potential that is reached downhill from a position at constant load.
-    pub(crate) fn minimum(&mut self, start: &PathPoint) -> Result<Minimum, Failure> {
-        let potential = self.potential(start.at);
-        let configuration = start.configuration.clone();
-        potential.minimise(configuration, &mut self.effort)
-    }
-
-    /// The maximum rotation or hinge translation between two positions, in the frames of a state
-    /// near them.
-    pub(crate) fn distance(&self, near: &PotentialState, to: &PathPoint, from: &PathPoint) -> f64 {
-        let motion = moved(&to.configuration, &from.configuration, -1.0);
-        self.potential(from.at).length(near, &motion)
+    /// The maximum rotation or hinge translation between a position and a state near it, in the
+    /// frames of the state.
+    pub(crate) fn distance(&self, state: &PotentialState, from: &PathPoint) -> f64 {
+        let motion = moved(&state.configuration, &from.configuration, -1.0);
+        self.length(state, &motion)
     }
 }

@@ -14,14 +14,13 @@
 use crate::{
     equilibrium::{
         displacement_control::HeldFactor,
-        hinged_sheet::HingedSheet,
-        load_step::Effort,
+        load_step::StepTangent,
         newton::Minimum,
-        potential::{PathStage, Potential, PotentialState, moved},
+        potential::{Branch, PathStage, PotentialState, moved},
         predictor::PathPoint,
-        solver::EquilibriumSolver,
     },
     hinge_law::Order,
+    sheet::kinematics::Motion,
 };
 
 /// Maximum number of corrections.
@@ -44,20 +43,6 @@ const NEAR: f64 = 1e-4;
 /// refinements.
 const RATE: (f64, usize) = (1e-3, 3);
 
-/// The equilibria of a sheet under the loads, stroke and support motions of a solver.
-pub(crate) struct Branch<'a> {
-    pub solver: &'a EquilibriumSolver,
-    pub stage: PathStage,
-    pub sheet: HingedSheet<'a>,
-    /// Lower bound of the force that residuals are relative to (N).
-    pub force: f64,
-    pub panel_size: f64,
-    /// Counts what the branch costs.
-    pub effort: Effort,
-    /// Memory of factors that are not needed any more.
-    pub spare: Vec<f64>,
-}
-
 /// An equilibrium close enough to the path to follow it.
 pub(crate) struct Corrected {
     pub position: PathPoint,
@@ -65,7 +50,7 @@ pub(crate) struct Corrected {
     /// parameter by them.
     pub state: PotentialState,
     pub factor: HeldFactor,
-    pub rate: Vec<[f64; 3]>,
+    pub rate: Vec<Motion>,
     /// Length of the first correction: the error of the prediction (rad, or panel sizes).
     pub error: f64,
 }
@@ -78,12 +63,12 @@ struct Linearised {
 
 struct NewtonCorrection {
     at: f64,
-    motion: Vec<[f64; 3]>,
+    motion: Vec<Motion>,
     /// rad, or panel sizes
     length: f64,
 }
 
-pub(crate) struct Point {
+pub(crate) struct Waypoint {
     pub position: PathPoint,
     /// The rate along the path; the fastest hinge moves by one (rad, or panel sizes).
     pub rate: PathPoint,
@@ -93,7 +78,7 @@ pub(crate) struct Point {
     pub factor: Option<HeldFactor>,
 }
 
-impl Point {
+impl Waypoint {
     /// A position without a known rate: from there the path goes on by its load parameter.
     pub(crate) fn still(position: PathPoint) -> Self {
         let rate = PathPoint {
@@ -109,41 +94,7 @@ impl Point {
     }
 }
 
-impl<'a> Branch<'a> {
-    pub(crate) fn new(
-        solver: &'a EquilibriumSolver,
-        sheet: HingedSheet<'a>,
-        stage: PathStage,
-    ) -> Self {
-        let area: f64 = sheet.sheet.panels.iter().map(|panel| panel.area).sum();
-        let mut branch = Self {
-            solver,
-            stage,
-            sheet,
-            force: 0.0,
-            panel_size: (area / sheet.sheet.panels.len() as f64).sqrt(),
-            effort: Effort::default(),
-            spare: Vec::new(),
-        };
-        if solver.drive.is_none() {
-            let loads = solver.loads.iter().copied();
-            branch.force = branch.potential(0.0).largest(loads);
-        }
-        branch
-    }
-
-    /// The potential at a point of the path.
-    pub(crate) fn potential(&self, at: f64) -> Potential<'a> {
-        Potential {
-            solver: self.solver,
-            stage: self.stage,
-            sheet: self.sheet,
-            at,
-            force: self.force,
-            panel_size: self.panel_size,
-        }
-    }
-
+impl Branch<'_> {
     /// Moves supports and stroke of a position to their values at its load parameter; their values
     /// in `known` must be right.
     pub(crate) fn hold(&self, position: &mut PathPoint, known: &PathPoint) {
@@ -178,12 +129,12 @@ impl<'a> Branch<'a> {
         const DIVERGED: f64 = f64::INFINITY;
         let (mut error, mut before) = (None, DIVERGED);
         for _ in 0..CORRECTIONS {
-            let near = self.state(&position, Order::Tangent).and_then(|state| {
+            let near = self.state_at(&position, Order::Tangent).and_then(|state| {
                 let expected = Some(position.forces.clone());
-                self.linearised(position.at, PotentialState { expected, ..state })
+                self.linearised(PotentialState { expected, ..state })
             });
             let mut near = near.ok_or(DIVERGED)?;
-            let rate = self.rate(&self.potential(position.at), &near.state, &near.factor);
+            let rate = self.rate(&near.state, &near.factor);
             let in_plane = normal.map(|normal| (&rate[..], normal));
             let mut last = self.correction(&near.state, &near.factor, in_plane);
             if last.length.is_nan() || last.length > DIVERGENCE * before {
@@ -194,22 +145,22 @@ impl<'a> Branch<'a> {
                 return Err(error);
             }
             before = last.length;
-            position = self.corrected(position.at, &near.state, &last);
+            position = self.corrected(&near.state, &last);
             // The other corrections need only the forces of the hinges.
             let mut next = before;
             while next > CLOSE {
-                let state = self.state(&position, Order::Forces).ok_or(DIVERGED)?;
+                let state = self.state_at(&position, Order::Forces).ok_or(DIVERGED)?;
                 near.state = state.with_stiffness_of(&near.state);
                 let again = self.correction(&near.state, &near.factor, in_plane);
                 if again.length.is_nan() || again.length > CONTRACTION * last.length {
                     break;
                 }
-                position = self.corrected(position.at, &near.state, &again);
+                position = self.corrected(&near.state, &again);
                 next = again.length * again.length / last.length;
                 last = again;
             }
             if next <= CLOSE {
-                let state = self.state(&position, Order::Tangent).ok_or(DIVERGED)?;
+                let state = self.state_at(&position, Order::Tangent).ok_or(DIVERGED)?;
                 return Ok(Corrected {
                     position: PathPoint { forces: state.forces(), ..position },
                     state,
@@ -228,12 +179,12 @@ impl<'a> Branch<'a> {
         let tolerance = self.solver.settings.tolerance;
         let mut before = f64::INFINITY;
         for _ in 0..CORRECTIONS {
-            let mut state = self.state(&position, Order::Tangent)?;
+            let mut state = self.state_at(&position, Order::Tangent)?;
             if state.is_balanced(tolerance) {
-                return self.linearised(position.at, state).map(Minimum::from);
+                return self.linearised(state).map(Minimum::from);
             }
             state.expected = Some(position.forces.clone());
-            let mut near = self.linearised(position.at, state)?;
+            let mut near = self.linearised(state)?;
             let first = self.correction(&near.state, &near.factor, None);
             if first.length.is_nan() || first.length > DIVERGENCE * before {
                 return None;
@@ -242,7 +193,7 @@ impl<'a> Branch<'a> {
             let mut next = before * before;
             let mut last = first;
             let mut polished = false;
-            position = self.corrected(position.at, &near.state, &last);
+            position = self.corrected(&near.state, &last);
             for _ in 0..CORRECTIONS {
                 // One more correction makes a balanced state as smooth in the design as rounding
                 // allows.
@@ -254,19 +205,16 @@ impl<'a> Branch<'a> {
                 } else {
                     Order::Tangent
                 };
-                let mut state = self.state(&position, order)?;
+                let mut state = self.state_at(&position, order)?;
                 state.rounding = state.rounding.max(near.state.rounding);
                 let balanced = state.is_balanced(tolerance);
                 if balanced && ready {
                     // Factors of a tangent this close serve as its own, after refinement.
                     if before > NEAR {
-                        return self.linearised(position.at, state).map(Minimum::from);
+                        return self.linearised(state).map(Minimum::from);
                     }
-                    return Some(Minimum {
-                        tangent: self.potential(position.at).tangent(&state),
-                        factor: Some(near.factor),
-                        state,
-                    });
+                    let values = self.tangent(&state);
+                    return Some(Linearised { state, values, ..near }.into());
                 }
                 polished = balanced;
                 let again = self.correction(&state, &near.factor, None);
@@ -275,7 +223,7 @@ impl<'a> Branch<'a> {
                     break;
                 }
                 near.state = state.with_stiffness_of(&near.state);
-                position = self.corrected(position.at, &near.state, &again);
+                position = self.corrected(&near.state, &again);
                 next = again.length * again.length / last.length;
                 last = again;
             }
@@ -283,28 +231,9 @@ impl<'a> Branch<'a> {
         None
     }
 
-    /// The state at a position; `None` if its energy is not finite.
-    pub(crate) fn state(&self, position: &PathPoint, order: Order) -> Option<PotentialState> {
-        let configuration = position.configuration.clone();
-        self.potential(position.at).state_up_to(configuration, order)
-    }
-
-    fn linearised(&mut self, at: f64, state: PotentialState) -> Option<Linearised> {
-        let potential = self.potential(at);
-        let (values, factor) = self.factor(&potential, &state);
+    fn linearised(&mut self, state: PotentialState) -> Option<Linearised> {
+        let StepTangent { values, factor } = self.factorised(&state);
         Some(Linearised { state, values, factor: factor? })
-    }
-
-    /// The tangent of a state and its factors.
-    pub(crate) fn factor(
-        &mut self,
-        potential: &Potential,
-        state: &PotentialState,
-    ) -> (Vec<f64>, Option<HeldFactor>) {
-        self.effort.factorisations += 1;
-        let values = potential.tangent(state);
-        let factor = potential.factorise(&values, std::mem::take(&mut self.spare));
-        (values, factor)
     }
 
     /// The correction of a state by factors: with the rate with the load parameter in the plane
@@ -313,29 +242,29 @@ impl<'a> Branch<'a> {
         &mut self,
         state: &PotentialState,
         factor: &HeldFactor,
-        in_plane: Option<(&[[f64; 3]], &PathPoint)>,
+        in_plane: Option<(&[Motion], &PathPoint)>,
     ) -> NewtonCorrection {
         let direct = self.direct(state, factor);
         let (motion, at) = match in_plane {
             Some((rate, normal)) => self.in_plane(&direct, rate, normal),
             None => (direct, 0.0),
         };
-        let length = self.potential(0.0).length(state, &motion);
+        let length = self.length(state, &motion);
         self.effort.iterations += usize::from(length > 0.0);
         NewtonCorrection { at, motion, length }
     }
 
-    fn corrected(&self, at: f64, state: &PotentialState, by: &NewtonCorrection) -> PathPoint {
-        let rates = self.potential(at).force_rates(state, &by.motion);
+    fn corrected(&self, state: &PotentialState, by: &NewtonCorrection) -> PathPoint {
+        let rates = self.force_rates(state, &by.motion);
         PathPoint {
-            at: at + by.at,
+            at: state.at + by.at,
             configuration: moved(&state.configuration, &by.motion, 1.0),
             forces: moved(&state.forces(), &rates, 1.0),
         }
     }
 
     /// The correction d_0 of a state at constant load.
-    pub(crate) fn direct(&self, state: &PotentialState, factor: &HeldFactor) -> Vec<[f64; 3]> {
+    pub(crate) fn direct(&self, state: &PotentialState, factor: &HeldFactor) -> Vec<Motion> {
         let downhill: Vec<f64> = state.gradient.iter().map(|g| -g).collect();
         let pattern = &self.solver.pattern;
         pattern.spread(&factor.solve(pattern, &downhill))
@@ -344,17 +273,17 @@ impl<'a> Branch<'a> {
     /// The correction in the plane normal to the path, and the correction of the load parameter.
     pub(crate) fn in_plane(
         &self,
-        direct: &[[f64; 3]],
-        rate: &[[f64; 3]],
+        direct: &[Motion],
+        rate: &[Motion],
         normal: &PathPoint,
-    ) -> (Vec<[f64; 3]>, f64) {
-        let along = |motion: &[[f64; 3]]| self.product(&normal.configuration, motion);
+    ) -> (Vec<Motion>, f64) {
+        let along = |motion: &[Motion]| self.product(&normal.configuration, motion);
         let dt = -along(direct) / along(rate);
         (moved(direct, rate, dt), dt)
     }
 
     /// The product of two motions; lengths are divided by the size of a panel.
-    pub(crate) fn product(&self, a: &[[f64; 3]], b: &[[f64; 3]]) -> f64 {
+    pub(crate) fn product(&self, a: &[Motion], b: &[Motion]) -> f64 {
         let scale = 1.0 / (self.panel_size * self.panel_size);
         std::iter::zip(a, b)
             .map(|([ax, ay, phi], [bx, by, psi])| scale * (ax * bx + ay * by) + phi * psi)
@@ -362,11 +291,10 @@ impl<'a> Branch<'a> {
     }
 
     /// The point of the branch at a corrected position, seen along the rate `before`.
-    pub(crate) fn point(&self, corrected: Corrected, before: Option<&PathPoint>) -> Point {
+    pub(crate) fn point(&self, corrected: Corrected, before: Option<&PathPoint>) -> Waypoint {
         let Corrected { position, state, factor, rate, .. } = corrected;
-        let potential = self.potential(position.at);
-        let rate = self.refined_rate(&potential, &state, &factor, rate);
-        let size = potential.length(&state, &rate);
+        let rate = self.refined_rate(&state, &factor, rate);
+        let size = self.length(&state, &rate);
         // A path without any motion is followed by its load parameter.
         let size = if size > 0.0 { size } else { 1.0 };
         // A stable branch goes on to higher loads, however sharply it turns where hinges lock;
@@ -375,11 +303,11 @@ impl<'a> Branch<'a> {
             !factor.is_stable() && self.product(&before.configuration, &rate) < 0.0
         });
         let scale = if backwards { -1.0 / size } else { 1.0 / size };
-        let forces = potential.force_rates(&state, &rate);
+        let forces = self.force_rates(&state, &rate);
         let rate = PathPoint { at: 1.0, configuration: rate, forces };
         let rate = PathPoint::sum([(scale, &rate)]);
-        let turning = |most: f64, rate: &[f64; 3]| rate[2].abs().max(most);
-        Point {
+        let turning = |most: f64, rate: &Motion| rate[2].abs().max(most);
+        Waypoint {
             turning: rate.configuration.iter().fold(0.0, turning),
             rate,
             position,
@@ -390,18 +318,17 @@ impl<'a> Branch<'a> {
     /// A rate with the load parameter, refined by products with the tangent of the state.
     fn refined_rate(
         &self,
-        potential: &Potential,
         state: &PotentialState,
         factor: &HeldFactor,
-        mut rate: Vec<[f64; 3]>,
-    ) -> Vec<[f64; 3]> {
+        mut rate: Vec<Motion>,
+    ) -> Vec<Motion> {
         let pattern = &self.solver.pattern;
-        let driving = potential.driving(state);
+        let driving = self.driving(state);
         for _ in 0..RATE.1 {
-            let resisted = potential.resistance(state, &rate);
+            let resisted = self.resistance(state, &rate);
             let missing = moved(&driving, &resisted, -1.0);
             let change = pattern.spread(&factor.solve(pattern, &pattern.gather(&missing)));
-            let [before, by] = [&rate, &change].map(|motion| potential.length(state, motion));
+            let [before, by] = [&rate, &change].map(|motion| self.length(state, motion));
             rate = moved(&rate, &change, 1.0);
             if by <= RATE.0 * before {
                 break;
@@ -411,12 +338,7 @@ impl<'a> Branch<'a> {
     }
 
     /// The rate of the configuration with the load parameter.
-    pub(crate) fn rate(
-        &self,
-        potential: &Potential,
-        state: &PotentialState,
-        factor: &HeldFactor,
-    ) -> Vec<[f64; 3]> {
+    pub(crate) fn rate(&self, state: &PotentialState, factor: &HeldFactor) -> Vec<Motion> {
         let solver = self.solver;
         let (supports, stroke) = if self.stage == PathStage::Actuation {
             let stroke = solver.drive.as_ref().map_or(0.0, |(_, stroke)| *stroke);
@@ -424,9 +346,9 @@ impl<'a> Branch<'a> {
         } else {
             (vec![[0.0; 3]; solver.topology.panel_count()], 0.0)
         };
-        let mut b = potential.driving(state);
+        let mut b = self.driving(state);
         if supports.as_flattened().iter().any(|motion| *motion != 0.0) {
-            b = moved(&b, &potential.resistance(state, &supports), -1.0);
+            b = moved(&b, &self.resistance(state, &supports), -1.0);
         }
         let b = solver.pattern.gather(&b);
         let (free, _) = factor.solve_bordered(&solver.pattern, &b, stroke);
@@ -436,6 +358,7 @@ impl<'a> Branch<'a> {
 
 impl From<Linearised> for Minimum {
     fn from(near: Linearised) -> Self {
-        Self { state: near.state, tangent: near.values, factor: Some(near.factor) }
+        let tangent = StepTangent { values: near.values, factor: Some(near.factor) };
+        Self { state: near.state, tangent }
     }
 }

@@ -11,6 +11,8 @@
 //! ```
 
 use crate::equilibrium::tangent::{Factor, TangentPattern};
+use crate::sheet::kinematics::Motion;
+use std::iter::zip;
 use support::vectors::dot;
 
 /// The direction c of the loads in the free degrees of freedom.
@@ -27,7 +29,7 @@ impl Stroke {
     /// The stroke of the loads (F_x, F_y, M), given in `loads` with three entries per panel, in the
     /// free degrees of freedom; `None` without any load. If there are only couples, F is the sum of
     /// the couples and the stroke is an angle.
-    pub(crate) fn new(loads: &[[f64; 3]], gathered: &[f64]) -> Option<Self> {
+    pub(crate) fn new(loads: &[Motion], gathered: &[f64]) -> Option<Self> {
         magnitude(loads).map(|(size, of_forces)| Self {
             direction: gathered.iter().map(|f| f / size).collect(),
             size,
@@ -45,9 +47,9 @@ impl Stroke {
     }
 
     /// The gradient of the stroke of a configuration with respect to the loads.
-    pub(crate) fn by_loads(&self, loads: &[[f64; 3]], configuration: &[[f64; 3]]) -> Vec<[f64; 3]> {
+    pub(crate) fn by_loads(&self, loads: &[Motion], configuration: &[Motion]) -> Vec<Motion> {
         let stroke = work(loads, configuration) / self.size;
-        let by_load = |([x, y, m], q): (&[f64; 3], &[f64; 3])| {
+        let by_load = |([x, y, m], q): (&Motion, &Motion)| {
             let force = x.hypot(*y);
             let by_size = if !self.of_forces {
                 [0.0, 0.0, m.signum()]
@@ -58,11 +60,11 @@ impl Stroke {
             };
             std::array::from_fn(|d| (q[d] - stroke * by_size[d]) / self.size)
         };
-        std::iter::zip(loads, configuration).map(by_load).collect()
+        zip(loads, configuration).map(by_load).collect()
     }
 
     /// Whether the sum F is differentiable in each component of the load on a panel.
-    pub(crate) fn smooth_in(&self, &[x, y, m]: &[f64; 3]) -> [bool; 3] {
+    pub(crate) fn smooth_in(&self, &[x, y, m]: &Motion) -> [bool; 3] {
         let pulled = x.hypot(y) > 0.0;
         if self.of_forces { [pulled, pulled, true] } else { [false, false, m != 0.0] }
     }
@@ -144,7 +146,7 @@ impl HeldFactor {
             return (x, 0.0);
         };
         let mu = (dot(&border.direction, &x) - d) / border.compliance;
-        for (x, y) in std::iter::zip(&mut x, &border.response) {
+        for (x, y) in zip(&mut x, &border.response) {
             *x -= mu * y;
         }
         (x, mu)
@@ -153,7 +155,7 @@ impl HeldFactor {
 
 /// The sum of the magnitudes of the translational components, or of the rotational ones if the
 /// former are zero, and whether it is the former; `None` if all are zero.
-pub fn magnitude(by_panel: &[[f64; 3]]) -> Option<(f64, bool)> {
+pub fn magnitude(by_panel: &[Motion]) -> Option<(f64, bool)> {
     let along: f64 = by_panel.iter().map(|[x, y, _]| x.hypot(*y)).sum();
     let about: f64 = by_panel.iter().map(|[_, _, m]| m.abs()).sum();
     match (along > 0.0, about > 0.0) {
@@ -164,6 +166,6 @@ pub fn magnitude(by_panel: &[[f64; 3]]) -> Option<(f64, bool)> {
 }
 
 /// The work of the forces (F_x, F_y, M) on panels in motions of them (N mm).
-pub fn work(forces: &[[f64; 3]], motions: &[[f64; 3]]) -> f64 {
+pub fn work(forces: &[Motion], motions: &[Motion]) -> f64 {
     dot(forces.as_flattened(), motions.as_flattened())
 }

@@ -21,8 +21,7 @@ use crate::{
     hinge_law::Order,
     sheet::{
         cut_sheet::Sheet,
-        kinematics::{Configuration, HingeMotion},
-        panel_vectors::{add_at_hinge, at_hinge},
+        kinematics::{Configuration, HingeMotion, Motion, add_at_hinge, at_hinge},
     },
 };
 use support::vectors::dot;
@@ -35,7 +34,7 @@ pub struct ForceResponse<'a> {
     motions: Vec<HingeMotion>,
     /// If supports move the sheet: rates of (a, s, theta) of every hinge along the path, by their
     /// displacement.
-    path_rates: Option<Vec<[f64; 3]>>,
+    path_rates: Option<Vec<Motion>>,
 }
 
 /// What an error of the hinge forces changes.
@@ -85,7 +84,7 @@ impl<'a> ForceResponse<'a> {
         Some(SheetChange { motions, load: by_path.or(by_stroke) })
     }
 
-    fn solve(&self, forces: &[[f64; 3]], stroke: Option<&Stroke>) -> Option<(Configuration, f64)> {
+    fn solve(&self, forces: &[Motion], stroke: Option<&Stroke>) -> Option<(Configuration, f64)> {
         let pattern = &self.solver.pattern;
         let rhs = pattern.gather(forces);
         let tangent = self.step.tangent.as_ref()?;
@@ -94,7 +93,7 @@ impl<'a> ForceResponse<'a> {
     }
 
     /// See `path_rates`; `None` if the tangent is singular or nothing moves the supports.
-    fn rates_along_path(&self, hinged: HingedSheet) -> Option<Vec<[f64; 3]>> {
+    fn rates_along_path(&self, hinged: HingedSheet) -> Option<Vec<Motion>> {
         let prescribed = self.solver.support_motions();
         let (size, _) = magnitude(&prescribed)?;
         let energies = hinged.energies(&self.step.deformations, Order::Tangent);

@@ -36,31 +36,24 @@ pub enum Status {
 }
 
 /// Why a descent in energy ended without a minimum.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, thiserror::Error)]
 #[serde(rename_all = "kebab-case")]
 pub enum DescentEnd {
     /// The maximum number of iterations was made while the energy still decreased.
+    #[error("the energy still decreases at the last iteration")]
     Iterations,
     /// The path has more increments than the maximum, and no equilibrium was found beyond them.
+    #[error("the path is longer than the maximum number of increments")]
     Increments,
     /// No further step lowers the energy, but the residual is above the loose tolerance.
+    #[error("no step lowers the energy further, but the forces are not balanced")]
     Stagnated,
     /// The energy or its gradient is not a finite number.
+    #[error("the energy is not a finite number")]
     NotFinite,
     /// Stopped on request.
+    #[error("stopped on request")]
     Stopped,
-}
-
-impl fmt::Display for DescentEnd {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        f.write_str(match self {
-            Self::Iterations => "the energy still decreases at the last iteration",
-            Self::Increments => "the path is longer than the maximum number of increments",
-            Self::Stagnated => "no step lowers the energy further, but the forces are not balanced",
-            Self::NotFinite => "the energy is not a finite number",
-            Self::Stopped => "stopped on request",
-        })
-    }
 }
 
 /// What a part of the path cost.

@@ -6,22 +6,20 @@
 use crate::{
     equilibrium::{
         continuation::{Follower, LEAP},
-        corrector::{Branch, Point},
+        corrector::Waypoint,
         displacement_control::work,
         hinged_sheet::HingedSheet,
         load_step::{DescentEnd, LoadStep, Status, StepTangent},
         newton::{Failure, Minimum},
-        potential::{PathStage, PotentialState, moved},
+        potential::{Branch, PathStage, PotentialState},
         predictor::PathPoint,
         solver::EquilibriumSolver,
         weight::weights_of_panels,
     },
     hinge_law::Order,
-    sheet::{
-        kinematics::{Configuration, HingeMotion},
-        panel_vectors::add_at_hinge,
-    },
+    sheet::kinematics::{Configuration, HingeMotion, Motion, add_at_hinge},
 };
+use support::vectors;
 
 /// The end of an increment of a path.
 #[derive(Clone, Debug)]
@@ -108,14 +106,12 @@ impl EquilibriumSolver {
     /// If the grids of sheet and solver differ.
     pub fn full_load(&self, sheet: HingedSheet, configuration: Configuration) -> LoadStep {
         let mut branch = Branch::new(self, sheet, PathStage::Actuation);
-        let potential = branch.potential(1.0);
-        let Some(state) = potential.state_up_to(configuration.clone(), Order::Design) else {
+        let Some(state) = branch.state(1.0, configuration.clone(), Order::Design) else {
             return not_finite(sheet, configuration);
         };
-        let (tangent, factor) = branch.factor(&potential, &state);
         let found = state.residual <= self.settings.loose_tolerance().max(state.rounding);
-        let minimum = Minimum { state, tangent, factor };
-        let step = branch.load_step(minimum, 0);
+        let tangent = branch.factorised(&state);
+        let step = branch.load_step(Minimum { state, tangent }, 0);
         if found {
             return step;
         }
@@ -129,8 +125,8 @@ impl EquilibriumSolver {
         &self,
         hinged: HingedSheet,
         weight: f64,
-        configuration: &[[f64; 3]],
-    ) -> Vec<[f64; 3]> {
+        configuration: &[Motion],
+    ) -> Vec<Motion> {
         let sheet = hinged.sheet;
         let motions = HingeMotion::all(sheet, configuration);
         let deformations: Vec<_> = motions.iter().map(HingeMotion::deformation).collect();
@@ -142,16 +138,16 @@ impl EquilibriumSolver {
         let by_area = self.weight.map(|component| weight * component);
         let weights = weights_of_panels(sheet, by_area, configuration);
         for (force, weight) in std::iter::zip(&mut forces, weights) {
-            (0..3).for_each(|d| force[d] -= weight.force[d]);
+            vectors::add(force, &weight.force, -1.0);
         }
         forces
     }
 
     /// The forces (F_x, F_y, M) by which the supports hold the panels in an equilibrium at full
     /// load (N, N, N mm); zero at free degrees of freedom.
-    pub fn reactions(&self, sheet: HingedSheet, configuration: &[[f64; 3]]) -> Vec<[f64; 3]> {
-        let potential = Branch::new(self, sheet, PathStage::Actuation).potential(1.0);
-        let state = potential.state_up_to(configuration.to_vec(), Order::Forces);
+    pub fn reactions(&self, sheet: HingedSheet, configuration: &[Motion]) -> Vec<Motion> {
+        let branch = Branch::new(self, sheet, PathStage::Actuation);
+        let state = branch.state(1.0, configuration.to_vec(), Order::Forces);
         let state = state.expect("the energy of an equilibrium is finite");
         self.at_supports(&state.unbalanced)
     }
@@ -250,7 +246,7 @@ impl Follower<'_> {
     }
 
     fn last_state(&self, order: Order) -> PotentialState {
-        let state = self.branch.state(&self.last.position, order);
+        let state = self.branch.state_at(&self.last.position, order);
         state.expect("this state was computed before")
     }
 
@@ -282,7 +278,7 @@ impl Follower<'_> {
         };
         self.branch.hold(&mut position, &self.last.position);
         let minimum = self.branch.stable_near(&position)?;
-        let moved = self.branch.moved(&minimum, &position);
+        let moved = self.branch.distance(&minimum.state, &position);
         // The start without an arc is a position at a higher load.
         self.jumps += usize::from(self.arc.is_some() && moved > LEAP);
         Ok(minimum)
@@ -294,12 +290,8 @@ impl Follower<'_> {
         let mut start = PathPoint { at: to, ..self.last.position.clone() };
         self.branch.hold(&mut start, &self.last.position);
         let minimum = self.branch.minimum(&start)?;
-        let moved = self.branch.moved(&minimum, &start);
-        self.last = Point::still(PathPoint {
-            at: to,
-            configuration: minimum.state.configuration.clone(),
-            forces: minimum.state.forces(),
-        });
+        let moved = self.branch.distance(&minimum.state, &start);
+        self.last = Waypoint::still(minimum.state.position());
         self.begin();
         Ok((minimum, moved))
     }
@@ -309,9 +301,8 @@ impl Branch<'_> {
     /// The load step at a minimum, `jumps` jumps after the last.
     pub(crate) fn load_step(&mut self, minimum: Minimum, jumps: usize) -> LoadStep {
         let status = self.status(&minimum, jumps > 0);
-        let tangent = StepTangent { values: minimum.tangent, factor: minimum.factor };
         self.force = minimum.state.force;
-        self.reported(minimum.state, Some(tangent), status, jumps)
+        self.reported(minimum.state, Some(minimum.tangent), status, jumps)
     }
 
     /// The load step in a state, with what it cost since the last.
@@ -353,13 +344,6 @@ impl Branch<'_> {
             hinges: state.energies,
             order: state.order,
         }
-    }
-
-    /// The maximum rotation or hinge translation from a position to a minimum.
-    pub(crate) fn moved(&self, minimum: &Minimum, start: &PathPoint) -> f64 {
-        let motion = moved(&minimum.state.configuration, &start.configuration, -1.0);
-        let potential = self.potential(start.at);
-        potential.length(&minimum.state, &motion)
     }
 
     fn status(&self, minimum: &Minimum, jumped: bool) -> Status {

@@ -15,7 +15,7 @@ use crate::{
     geometry::plane::{complex, point, turn_less_one},
     sheet::{cut_sheet::Panel, kinematics::Configuration},
 };
-use support::fault::Fault;
+use support::{Fault, refuse};
 
 /// Number of load steps on the way of a hole.
 const STEPS: usize = 4;
@@ -56,7 +56,7 @@ impl EquilibriumSolver {
     pub fn mounted(&self, sheet: HingedSheet) -> Result<Vec<MountingStep>, Fault> {
         let panels = self.fastened();
         let [first, second, ..] = panels[..] else {
-            return Err(Fault::from("the sheet has no fasteners that open it"));
+            refuse!("the sheet has no fasteners that open it");
         };
         let flat = self.laid(sheet, [first, second]);
         let mut steps = vec![MountingStep {

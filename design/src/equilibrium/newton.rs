@@ -13,11 +13,13 @@
 use crate::{
     equilibrium::{
         displacement_control::HeldFactor,
-        load_step::{DescentEnd, Effort},
-        potential::{Potential, PotentialState, moved},
+        load_step::{DescentEnd, StepTangent},
+        potential::{Branch, PotentialState, moved},
+        predictor::PathPoint,
     },
-    sheet::kinematics::Configuration,
+    hinge_law::Order,
 };
+use std::iter::zip;
 use support::vectors::dot;
 
 /// Maximum length of a step: rotations in rad, hinge translations in panel sizes.
@@ -40,14 +42,12 @@ pub(crate) const LEVEL: f64 = 1e-9;
 
 pub(crate) struct Minimum {
     pub state: PotentialState,
-    pub tangent: Vec<f64>,
-    /// `None` if the tangent is singular.
-    pub factor: Option<HeldFactor>,
+    pub tangent: StepTangent,
 }
 
 impl Minimum {
     pub(crate) fn is_stable(&self) -> bool {
-        self.factor.as_ref().is_some_and(HeldFactor::is_stable)
+        self.tangent.factor.as_ref().is_some_and(HeldFactor::is_stable)
     }
 }
 
@@ -65,15 +65,11 @@ impl Failure {
     const NOT_FINITE: Self = Self { residual: f64::INFINITY, end: DescentEnd::NotFinite };
 }
 
-impl Potential<'_> {
+impl Branch<'_> {
     /// A minimum near `start`, at lower energy.
-    pub(crate) fn minimise(
-        &self,
-        start: Configuration,
-        effort: &mut Effort,
-    ) -> Result<Minimum, Failure> {
+    pub(crate) fn minimum(&mut self, start: &PathPoint) -> Result<Minimum, Failure> {
         let settings = &self.solver.settings;
-        let mut state = self.state(start).ok_or(Failure::NOT_FINITE)?;
+        let mut state = self.state_at(start, Order::Tangent).ok_or(Failure::NOT_FINITE)?;
         let (mut scale, mut memory) = (None, Vec::new());
         let (mut longest, mut shift) = (LONGEST_STEP, SHIFTS[0]);
         for _ in 0..settings.max_iterations {
@@ -81,19 +77,18 @@ impl Potential<'_> {
             if stationary {
                 state.expected = None;
             }
-            let tangent = self.tangent(&state);
-            let scale = scale.get_or_insert_with(|| self.solver.pattern.shift_scale(&tangent));
-            effort.factorisations += 1;
-            let factor = self.factorise(&tangent, std::mem::take(&mut memory));
+            let values = self.tangent(&state);
+            let scale = scale.get_or_insert_with(|| self.solver.pattern.shift_scale(&values));
+            let factor = self.factorise(&values, std::mem::take(&mut memory));
             let stable = factor.as_ref().filter(|factor| factor.is_stable());
             let next = match stable {
                 Some(_) if stationary => None,
                 Some(factor) => self.step(&state, factor, &mut longest),
                 None => {
-                    let shifted = self.shifted_factor(&tangent, scale, &mut shift, effort);
+                    let shifted = self.shifted_factor(&values, scale, &mut shift);
                     shifted.and_then(|factor| {
                         if stationary {
-                            self.escape(&state, &tangent, scale, &factor)
+                            self.escape(&state, &values, scale, &factor)
                         } else {
                             self.step(&state, &factor, &mut longest)
                         }
@@ -103,12 +98,12 @@ impl Potential<'_> {
             let residual = state.residual;
             match next {
                 Some(next) => {
-                    effort.iterations += 1;
+                    self.effort.iterations += 1;
                     state = next;
                 }
                 None if state.expected.is_some() => state.expected = None,
                 None if stationary || residual <= settings.loose_tolerance() => {
-                    return Ok(Minimum { state, tangent, factor });
+                    return Ok(Minimum { state, tangent: StepTangent { values, factor } });
                 }
                 None => {
                     let end = DescentEnd::Stagnated;
@@ -168,26 +163,32 @@ impl Potential<'_> {
 
     /// The factors of the tangent, stored in `memory` of earlier factors, with the border under
     /// displacement control.
-    pub(crate) fn factorise(&self, tangent: &[f64], memory: Vec<f64>) -> Option<HeldFactor> {
+    fn factorise(&mut self, tangent: &[f64], memory: Vec<f64>) -> Option<HeldFactor> {
+        self.effort.factorisations += 1;
         let factor = self.solver.pattern.factorise(tangent, memory)?;
         HeldFactor::new(&self.solver.pattern, factor, self.solver.stroke())
+    }
+
+    /// The tangent of a state and its factors.
+    pub(crate) fn factorised(&mut self, state: &PotentialState) -> StepTangent {
+        let values = self.tangent(state);
+        let memory = std::mem::take(&mut self.spare);
+        StepTangent { factor: self.factorise(&values, memory), values }
     }
 
     /// H + sigma S, positive definite; `None` if no sigma up to the maximum makes it so. The search
     /// begins below `shift`, the sigma found last.
     fn shifted_factor(
-        &self,
+        &mut self,
         tangent: &[f64],
         scale: &[f64],
         shift: &mut f64,
-        effort: &mut Effort,
     ) -> Option<HeldFactor> {
         let [first, growth, maximum] = SHIFTS;
         *shift = first.max(*shift / growth);
         while *shift <= maximum {
             let pattern = &self.solver.pattern;
             let shifted = pattern.shifted(tangent, scale.iter().map(|entry| *shift * entry));
-            effort.factorisations += 1;
             match self.factorise(&shifted, Vec::new()) {
                 Some(mut factor) if factor.is_stable() => {
                     factor.shifted = true;
@@ -212,7 +213,7 @@ impl Potential<'_> {
         // A start vector that no symmetry of the sheet makes orthogonal to the direction.
         let mut direction: Vec<f64> = (1..=scale.len()).map(|i| (i as f64).sqrt().sin()).collect();
         for _ in 0..20 {
-            for (component, scale) in std::iter::zip(&mut direction, scale) {
+            for (component, scale) in zip(&mut direction, scale) {
                 *component *= scale;
             }
             direction = factor.solve(&self.solver.pattern, &direction);
@@ -220,7 +221,7 @@ impl Potential<'_> {
             direction.iter_mut().for_each(|component| *component /= norm);
         }
         let (product, _) = self.solver.pattern.product(tangent, &direction);
-        let size: f64 = std::iter::zip(&direction, scale).map(|(d, s)| d * d * s).sum();
+        let size: f64 = zip(&direction, scale).map(|(d, s)| d * d * s).sum();
         if dot(&direction, &product) >= NEGATIVE_CURVATURE * size {
             return None;
         }

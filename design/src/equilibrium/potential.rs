@@ -14,17 +14,19 @@
 
 use crate::{
     equilibrium::{
-        hinged_sheet::HingedSheet, panel_force::PanelForce, solver::EquilibriumSolver,
-        weight::weights_of_panels,
+        hinged_sheet::HingedSheet,
+        load_step::Effort,
+        predictor::PathPoint,
+        solver::EquilibriumSolver,
+        weight::{PanelForce, weights_of_panels},
     },
     hinge_law::{HingeEnergy, Order},
-    sheet::{
-        kinematics::{Configuration, HingeMotion},
-        panel_vectors::{add_at_hinge, at_hinge},
-    },
+    sheet::kinematics::{Configuration, HingeMotion, Motion, add_at_hinge, add_motions, at_hinge},
 };
 use hinge::HingeDeformation;
-use support::vectors::dot;
+use std::array::from_fn;
+use std::iter::zip;
+use support::vectors::{self, dot};
 
 /// What grows along a part of the path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -35,19 +37,21 @@ pub(crate) enum PathStage {
     Actuation,
 }
 
-/// The potential (10) at one point of the path.
-pub(crate) struct Potential<'a> {
+/// The potential (10) of a sheet under the loads, stroke and support motions of a solver, and the
+/// equilibria on a branch of its path.
+pub(crate) struct Branch<'a> {
     pub solver: &'a EquilibriumSolver,
-    pub sheet: HingedSheet<'a>,
     pub stage: PathStage,
-    /// The load parameter: the part of the weight that is on; then zeta, unless the stroke of the
-    /// loads is prescribed.
-    pub at: f64,
-    /// Size of a panel, by which moments are divided (mm).
-    pub panel_size: f64,
+    pub sheet: HingedSheet<'a>,
     /// Lower bound of the force that residuals are relative to (N): if the path passes a state
     /// without forces, the force of the states before.
     pub force: f64,
+    /// Size of a panel, by which moments are divided (mm).
+    pub panel_size: f64,
+    /// Counts what the branch costs.
+    pub effort: Effort,
+    /// Memory of factors that are not needed any more.
+    pub spare: Vec<f64>,
 }
 
 /// Maximum number of hinges of a panel, whose rounding errors add up.
@@ -55,6 +59,9 @@ const HINGES_OF_A_PANEL: f64 = 4.0;
 
 /// The potential and its first derivatives at a configuration.
 pub(crate) struct PotentialState {
+    /// The load parameter: the part of the weight that is on; then zeta, unless the stroke of the
+    /// loads is prescribed.
+    pub at: f64,
     pub configuration: Configuration,
     pub motions: Vec<HingeMotion>,
     pub energies: Vec<HingeEnergy>,
@@ -74,7 +81,7 @@ pub(crate) struct PotentialState {
     pub expected: Option<Vec<[f64; 3]>>,
     /// d Pi / d q over all degrees of freedom: at the supports, the forces that hold them (N, N, N
     /// mm).
-    pub unbalanced: Vec<[f64; 3]>,
+    pub unbalanced: Vec<Motion>,
     /// d Pi / d q over the free degrees of freedom.
     pub gradient: Vec<f64>,
     /// Maximum unbalanced force, relative to `force`.
@@ -92,13 +99,13 @@ impl PotentialState {
     }
 
     /// (F_a, F_s, M_theta) per hinge.
-    pub(crate) fn forces(&self) -> Vec<[f64; 3]> {
+    pub(crate) fn forces(&self) -> Vec<Motion> {
         self.energies.iter().map(|energy| energy.forces).collect()
     }
 
     /// The state with the stiffness of the hinges in a state near it.
     pub(crate) fn with_stiffness_of(mut self, near: &Self) -> Self {
-        for (energy, near) in std::iter::zip(&mut self.energies, &near.energies) {
+        for (energy, near) in zip(&mut self.energies, &near.energies) {
             energy.tangent = near.tangent;
         }
         self
@@ -113,17 +120,46 @@ impl PotentialState {
     pub(crate) fn deformations(&self) -> Vec<HingeDeformation> {
         self.motions.iter().map(HingeMotion::deformation).collect()
     }
+
+    /// The point of the path in this state.
+    pub(crate) fn position(&self) -> PathPoint {
+        let configuration = self.configuration.clone();
+        PathPoint { at: self.at, configuration, forces: self.forces() }
+    }
 }
 
-impl Potential<'_> {
-    /// The state with all that the tangent needs; `None` if the potential is not finite.
-    pub(crate) fn state(&self, configuration: Configuration) -> Option<PotentialState> {
-        self.state_up_to(configuration, Order::Tangent)
+impl<'a> Branch<'a> {
+    pub(crate) fn new(
+        solver: &'a EquilibriumSolver,
+        sheet: HingedSheet<'a>,
+        stage: PathStage,
+    ) -> Self {
+        let area: f64 = sheet.sheet.panels.iter().map(|panel| panel.area).sum();
+        let mut branch = Self {
+            solver,
+            stage,
+            sheet,
+            force: 0.0,
+            panel_size: (area / sheet.sheet.panels.len() as f64).sqrt(),
+            effort: Effort::default(),
+            spare: Vec::new(),
+        };
+        if solver.drive.is_none() {
+            branch.force = branch.largest(solver.loads.iter().copied());
+        }
+        branch
     }
 
-    /// The state with the derivatives of the hinge energies up to `order`, at least the forces.
-    pub(crate) fn state_up_to(
+    /// The state of a position; see [`state`](Self::state).
+    pub(crate) fn state_at(&self, position: &PathPoint, order: Order) -> Option<PotentialState> {
+        self.state(position.at, position.configuration.clone(), order)
+    }
+
+    /// The state with the derivatives of the hinge energies up to `order`, at least the forces;
+    /// `None` if the potential is not finite. The tangent needs [`Order::Tangent`].
+    pub(crate) fn state(
         &self,
+        at: f64,
         configuration: Configuration,
         order: Order,
     ) -> Option<PotentialState> {
@@ -137,21 +173,19 @@ impl Potential<'_> {
         for ((hinge, motion), energy) in sheet.hinges.iter().zip(&motions).zip(&energies) {
             add_at_hinge(&mut inner, hinge, motion.forces(energy.forces));
         }
-        let on_panels = self.on_panels(&configuration);
+        let on_panels = self.on_panels(at, &configuration);
         let mut constant = solver.held.to_vec();
-        for (sum, on_panel) in std::iter::zip(&mut constant, &on_panels) {
-            (0..3).for_each(|d| sum[d] += on_panel.force[d]);
+        for (sum, on_panel) in zip(&mut constant, &on_panels) {
+            vectors::add(sum, &on_panel.force, 1.0);
         }
-        for (inner, force) in std::iter::zip(inner.as_flattened_mut(), constant.as_flattened()) {
-            *inner -= force;
-        }
+        add_motions(&mut inner, &constant, -1.0);
         let (load_factor, worked) = match (&self.solver.drive, self.stage) {
             (Some(_), _) => (self.multiplier(&inner), 0.0),
             (None, PathStage::Weight) => (0.0, 0.0),
-            (None, PathStage::Actuation) => (self.at, self.at),
+            (None, PathStage::Actuation) => (at, at),
         };
-        let unbalanced: Vec<[f64; 3]> = std::iter::zip(&inner, &solver.loads)
-            .map(|(inner, load)| std::array::from_fn(|d| inner[d] - load_factor * load[d]))
+        let unbalanced: Vec<Motion> = zip(&inner, &solver.loads)
+            .map(|(inner, load)| from_fn(|d| inner[d] - load_factor * load[d]))
             .collect();
         let works = (solver.loads.as_flattened().iter())
             .zip(solver.held.as_flattened())
@@ -172,7 +206,8 @@ impl Potential<'_> {
             _ => unbalanced / force,
         };
         let state = PotentialState {
-            weight: self.weight_on(),
+            at,
+            weight: self.weight_on(at),
             potential: terms.clone().sum(),
             magnitude: terms.map(f64::abs).sum(),
             residual: over_force(left),
@@ -200,16 +235,16 @@ impl Potential<'_> {
                 let [length, angle] = motion.rounding();
                 let length = length + resolution * hinge.w_lig;
                 let deformation = [length, length, angle + resolution];
-                std::array::from_fn(|c| energy.tangent[c][c].abs() * deformation[c])
+                from_fn(|c| energy.tangent[c][c].abs() * deformation[c])
             }))
     }
 
     /// The zeta with the smallest residual.
-    fn multiplier(&self, inner: &[[f64; 3]]) -> f64 {
+    fn multiplier(&self, inner: &[Motion]) -> f64 {
         let arm = 1.0 / (self.panel_size * self.panel_size);
-        let product = |[x, y, m]: [f64; 3], [fx, fy, fm]: [f64; 3]| x * fx + y * fy + arm * m * fm;
+        let product = |[x, y, m]: Motion, [fx, fy, fm]: Motion| x * fx + y * fy + arm * m * fm;
         let (mut along, mut square) = (0.0, 0.0);
-        for (&inner, &load) in std::iter::zip(inner, &self.solver.loads) {
+        for (&inner, &load) in zip(inner, &self.solver.loads) {
             along += product(inner, load);
             square += product(load, load);
         }
@@ -217,7 +252,7 @@ impl Potential<'_> {
     }
 
     /// Maximum of forces and moments, as a force (N).
-    pub(crate) fn largest(&self, forces: impl Iterator<Item = [f64; 3]>) -> f64 {
+    pub(crate) fn largest(&self, forces: impl Iterator<Item = Motion>) -> f64 {
         forces
             .map(|[x, y, moment]| (x * x + y * y).sqrt().max(moment.abs() / self.panel_size))
             .fold(0.0, f64::max)
@@ -226,7 +261,7 @@ impl Potential<'_> {
     /// H of (20); away from an equilibrium with the predicted hinge forces.
     pub(crate) fn tangent(&self, state: &PotentialState) -> Vec<f64> {
         // A panel belongs to the block of the first of its hinges.
-        let mut on_panels = self.on_panels(&state.configuration);
+        let mut on_panels = self.on_panels(state.at, &state.configuration);
         let mut take = |panel: usize| on_panels.get_mut(panel).map(std::mem::take);
         let hinges = self.sheet.sheet.hinges.iter().enumerate();
         self.solver.pattern.assemble(hinges.map(|(h, hinge)| {
@@ -235,7 +270,7 @@ impl Potential<'_> {
             for (first, panel) in [(0, hinge.panel_a()), (3, hinge.panel_b())] {
                 if let Some(on_panel) = take(panel) {
                     for (i, row) in on_panel.stiffness.iter().enumerate() {
-                        (0..3).for_each(|j| block[first + i][first + j] += row[j]);
+                        vectors::add(&mut block[first + i][first..], row, 1.0);
                     }
                 }
             }
@@ -244,31 +279,25 @@ impl Potential<'_> {
     }
 
     /// The weight of every panel; empty if there is none.
-    fn on_panels(&self, configuration: &[[f64; 3]]) -> Vec<PanelForce> {
-        let (sheet, weight) = (self.sheet.sheet, self.weight());
-        match weight {
+    fn on_panels(&self, at: f64, configuration: &[Motion]) -> Vec<PanelForce> {
+        let on = self.weight_on(at);
+        match self.solver.weight.map(|component| on * component) {
             [0.0, 0.0] => Vec::new(),
-            _ => weights_of_panels(sheet, weight, configuration).collect(),
+            by_area => weights_of_panels(self.sheet.sheet, by_area, configuration).collect(),
         }
     }
 
-    /// Weight of a unit of area at this point of the path (N/mm^2).
-    fn weight(&self) -> [f64; 2] {
-        let on = self.weight_on();
-        self.solver.weight.map(|component| on * component)
-    }
-
-    /// The part of the weight that is on.
-    fn weight_on(&self) -> f64 {
+    /// The part of the weight that is on at a load parameter.
+    fn weight_on(&self, at: f64) -> f64 {
         match self.stage {
-            PathStage::Weight => self.at,
+            PathStage::Weight => at,
             PathStage::Actuation => 1.0,
         }
     }
 
     /// The forces on the panels (F_x, F_y, M) that grow with the load parameter in a state, by
     /// their rates.
-    pub(crate) fn driving(&self, state: &PotentialState) -> Vec<[f64; 3]> {
+    pub(crate) fn driving(&self, state: &PotentialState) -> Vec<Motion> {
         let solver = self.solver;
         match (self.stage, &solver.drive) {
             (PathStage::Weight, _) => {
@@ -282,9 +311,9 @@ impl Potential<'_> {
     }
 
     /// The rates of the hinge forces under a motion of all panels.
-    pub(crate) fn force_rates(&self, state: &PotentialState, motion: &[[f64; 3]]) -> Vec<[f64; 3]> {
+    pub(crate) fn force_rates(&self, state: &PotentialState, motion: &[Motion]) -> Vec<[f64; 3]> {
         let hinges = state.motions.iter().zip(&state.energies);
-        std::iter::zip(&self.sheet.sheet.hinges, hinges)
+        zip(&self.sheet.sheet.hinges, hinges)
             .map(|(hinge, (hinge_motion, energy))| {
                 let rates = hinge_motion.rates(at_hinge(hinge, motion));
                 energy.tangent.map(|row| dot(&row, &rates))
@@ -293,7 +322,7 @@ impl Potential<'_> {
     }
 
     /// H times a motion of all panels, including the supported ones.
-    pub(crate) fn resistance(&self, state: &PotentialState, motion: &[[f64; 3]]) -> Vec<[f64; 3]> {
+    pub(crate) fn resistance(&self, state: &PotentialState, motion: &[Motion]) -> Vec<Motion> {
         let mut forces = vec![[0.0; 3]; motion.len()];
         for (h, hinge) in self.sheet.sheet.hinges.iter().enumerate() {
             let (hinge_motion, energy) = (&state.motions[h], &state.energies[h]);
@@ -303,10 +332,9 @@ impl Potential<'_> {
                 .map(|row| dot(&row, &motions));
             add_at_hinge(&mut forces, hinge, force);
         }
-        let on_panels = self.on_panels(&state.configuration);
-        for ((force, on_panel), motion) in std::iter::zip(&mut forces, on_panels).zip(motion) {
-            let resistance = on_panel.resistance(motion);
-            (0..3).for_each(|d| force[d] += resistance[d]);
+        let on_panels = self.on_panels(state.at, &state.configuration);
+        for ((force, on_panel), motion) in zip(&mut forces, on_panels).zip(motion) {
+            vectors::add(force, &on_panel.resistance(motion), 1.0);
         }
         forces
     }
@@ -314,15 +342,15 @@ impl Potential<'_> {
     pub(crate) fn moved(
         &self,
         state: &PotentialState,
-        motion: &[[f64; 3]],
+        motion: &[Motion],
         fraction: f64,
     ) -> Option<PotentialState> {
-        self.state(moved(&state.configuration, motion, fraction))
+        self.state(state.at, moved(&state.configuration, motion, fraction), Order::Tangent)
     }
 
     /// Maximum panel rotation (rad) or hinge translation (panel sizes) of a motion.
-    pub(crate) fn length(&self, state: &PotentialState, motion: &[[f64; 3]]) -> f64 {
-        std::iter::zip(&self.sheet.sheet.hinges, &state.motions)
+    pub(crate) fn length(&self, state: &PotentialState, motion: &[Motion]) -> f64 {
+        zip(&self.sheet.sheet.hinges, &state.motions)
             .map(|(hinge, hinge_motion)| {
                 let motions = at_hinge(hinge, motion);
                 let [along, across, _] = hinge_motion.rates(motions);
@@ -334,12 +362,6 @@ impl Potential<'_> {
 }
 
 /// The configuration after a fraction of a motion.
-pub(crate) fn moved(
-    configuration: &[[f64; 3]],
-    motion: &[[f64; 3]],
-    fraction: f64,
-) -> Configuration {
-    std::iter::zip(configuration, motion)
-        .map(|(q, d)| std::array::from_fn(|c| q[c] + fraction * d[c]))
-        .collect()
+pub(crate) fn moved(configuration: &[Motion], motion: &[Motion], fraction: f64) -> Configuration {
+    zip(configuration, motion).map(|(q, d)| from_fn(|c| q[c] + fraction * d[c])).collect()
 }

@@ -10,6 +10,7 @@ use crate::equilibrium::{
     load_step::StepTangent,
     tangent::TangentPattern,
 };
+use std::iter::zip;
 
 /// Maximum number of refinement rounds; they end when the error no longer halves.
 const REFINEMENTS: usize = 20;
@@ -67,7 +68,7 @@ fn refined(
     let (mut remainder, mut slack) = (b.to_vec(), d);
     for _ in 0..=REFINEMENTS {
         let (dx, dmu) = factor.solve_bordered(pattern, &remainder, slack);
-        let x: Vec<f64> = std::iter::zip(&refined.x, dx).map(|(x, d)| x + d).collect();
+        let x: Vec<f64> = zip(&refined.x, dx).map(|(x, d)| x + d).collect();
         let mu = refined.mu + dmu;
         let (mut product, mut bound) = pattern.product(values, &x);
         slack = d;
@@ -76,7 +77,7 @@ fn refined(
             bound[i] += (mu * c).abs();
             slack -= c * x[i];
         }
-        remainder = std::iter::zip(b, product).map(|(b, p)| b - p).collect();
+        remainder = zip(b, product).map(|(b, p)| b - p).collect();
         let error = backward_error(&remainder, &bound, b);
         if error >= 0.5 * refined.error || error.is_nan() {
             break;

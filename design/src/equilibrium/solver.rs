@@ -18,15 +18,16 @@ use crate::{
     },
     sheet::{
         cut_sheet::{AttachmentPoint, Sheet},
-        kinematics::Configuration,
+        kinematics::{Configuration, Motion},
         topology::Topology,
     },
 };
+use std::iter::zip;
 use std::sync::{
     Arc,
     atomic::{AtomicBool, Ordering},
 };
-use support::fault::{Fault, fault};
+use support::{Fault, fault, refuse};
 
 /// Number of load steps in which the weight comes on.
 const WEIGHT_STEPS: usize = 2;
@@ -40,14 +41,14 @@ pub struct EquilibriumSolver {
     /// Prescribed motions at full load.
     pub(crate) supports: Box<[Support]>,
     /// (F_x, F_y, M) per panel at full load.
-    pub(crate) loads: Box<[[f64; 3]]>,
+    pub(crate) loads: Box<[Motion]>,
     /// Weight of a unit of area (N/mm^2), zero without weight.
     pub(crate) weight: [f64; 2],
     /// The points at which panels are held or pulled; the others have their centroids as reference
     /// points.
     pub(crate) attachment_points: Box<[AttachmentPoint]>,
     /// Loads held constant from the beginning of the path.
-    pub(crate) held: Box<[[f64; 3]]>,
+    pub(crate) held: Box<[Motion]>,
     /// Direction of the stroke and its value at full load, under displacement control.
     pub(crate) drive: Option<(Box<Stroke>, f64)>,
     /// Shared by the solvers of one sheet with other loads.
@@ -67,14 +68,13 @@ impl EquilibriumSolver {
     ) -> Result<Self, Fault> {
         let topology = topology.into();
         if steps == 0 {
-            return Err(fault("", "0 load steps", "use at least 1"));
+            refuse!("0 load steps: use at least 1");
         }
         let panels = topology.panel_count();
         let check = |what: &str, panel: usize| match panel < panels {
             true => Ok(()),
             false => {
-                let what = format!("{what} on panel {panel}");
-                Err(fault(what, format!("the panels of the sheet are 0..{panels}"), ""))
+                Err(fault!("{what} on panel {panel}: the panels of the sheet are 0..{panels}"))
             }
         };
         let mut supported = vec![[false; 3]; panels];
@@ -82,7 +82,7 @@ impl EquilibriumSolver {
             check("a support", panel)?;
             finite("a support", panel, value)?;
             if std::mem::replace(&mut supported[panel][dof.index()], true) {
-                return Err(Fault::from(format!("{dof:?} of panel {panel} is supported twice")));
+                refuse!("{dof:?} of panel {panel} is supported twice");
             }
         }
         let mut total = vec![[0.0; 3]; panels];
@@ -122,7 +122,7 @@ impl EquilibriumSolver {
     ///
     /// # Panics
     /// If there is not one load for each panel.
-    pub fn loaded(mut self, loads: &[[f64; 3]]) -> Result<Self, Fault> {
+    pub fn loaded(mut self, loads: &[Motion]) -> Result<Self, Fault> {
         assert_eq!(loads.len(), self.loads.len(), "one load per panel");
         for (panel, load) in loads.iter().enumerate() {
             load.iter().try_for_each(|value| finite("a load", panel, *value))?;
@@ -130,8 +130,9 @@ impl EquilibriumSolver {
         let held = self.supports.iter();
         if let Some(support) = held.into_iter().find(|s| loads[s.panel][s.dof.index()] != 0.0) {
             let Support { panel, dof, .. } = *support;
-            let what = format!("panel {panel} is loaded in {dof:?}, where it is supported");
-            return Err(fault("", what, "loads act on free degrees of freedom"));
+            refuse!(
+                "panel {panel} is loaded in {dof:?}, where it is supported: loads act on free degrees of freedom"
+            );
         }
         self.loads = loads.into();
         match self.drive.take() {
@@ -141,18 +142,18 @@ impl EquilibriumSolver {
     }
 
     /// Loads (F_x, F_y, M) on the panels at full load (N, N, N mm).
-    pub fn loads(&self) -> &[[f64; 3]] {
+    pub fn loads(&self) -> &[Motion] {
         &self.loads
     }
 
     /// A gradient in the loads, zero in those that are no variables: at the supports, and under
     /// displacement control those whose magnitude has a kink in the sum of all, at panels without
     /// them.
-    pub(crate) fn in_loads(&self, gradient: &[[f64; 3]]) -> Vec<[f64; 3]> {
+    pub(crate) fn in_loads(&self, gradient: &[Motion]) -> Vec<Motion> {
         let mut gradient = self.pattern.spread(&self.pattern.gather(gradient));
         if let Some(stroke) = self.stroke() {
-            for (gradient, load) in std::iter::zip(&mut gradient, &self.loads) {
-                for (entry, smooth) in std::iter::zip(gradient, stroke.smooth_in(load)) {
+            for (gradient, load) in zip(&mut gradient, &self.loads) {
+                for (entry, smooth) in zip(gradient, stroke.smooth_in(load)) {
                     *entry *= f64::from(smooth);
                 }
             }
@@ -162,7 +163,7 @@ impl EquilibriumSolver {
 
     /// The components of forces on the panels at the supports; at the free degrees of freedom they
     /// are zero.
-    pub(crate) fn at_supports(&self, forces: &[[f64; 3]]) -> Vec<[f64; 3]> {
+    pub(crate) fn at_supports(&self, forces: &[Motion]) -> Vec<Motion> {
         let mut at_supports = vec![[0.0; 3]; forces.len()];
         for support in &self.supports {
             let (panel, dof) = (support.panel, support.dof.index());
@@ -172,7 +173,7 @@ impl EquilibriumSolver {
     }
 
     /// The motions (u_x, u_y, phi) of the panels that the supports prescribe at full load.
-    pub fn support_motions(&self) -> Vec<[f64; 3]> {
+    pub fn support_motions(&self) -> Vec<Motion> {
         let mut motions = vec![[0.0; 3]; self.loads.len()];
         for support in &self.supports {
             motions[support.panel][support.dof.index()] = support.value;
@@ -188,7 +189,7 @@ impl EquilibriumSolver {
     /// The displacement of a configuration along the loads, by which a stroke is prescribed: their
     /// work over the sum of their magnitudes (mm; rad if there are only couples). `None` without
     /// loads.
-    pub fn displacement(&self, configuration: &[[f64; 3]]) -> Option<f64> {
+    pub fn displacement(&self, configuration: &[Motion]) -> Option<f64> {
         let (size, _) = magnitude(&self.loads)?;
         Some(work(&self.loads, configuration) / size)
     }
@@ -203,11 +204,11 @@ impl EquilibriumSolver {
     /// magnitudes.
     pub fn driven(mut self, stroke: f64) -> Result<Self, Fault> {
         if !stroke.is_finite() {
-            return Err(Fault::from(format!("the stroke {stroke} mm is not a finite number")));
+            refuse!("the stroke {stroke} mm is not a finite number");
         }
         let direction = Stroke::new(&self.loads, &self.pattern.gather(&self.loads));
-        let what = "displacement control needs a load, whose stroke is prescribed";
-        let direction = direction.ok_or_else(|| Fault::from(what))?;
+        let no_load = || fault!("displacement control needs a load, whose stroke is prescribed");
+        let direction = direction.ok_or_else(no_load)?;
         self.drive = Some((Box::new(direction), stroke));
         Ok(self)
     }
@@ -227,7 +228,7 @@ impl EquilibriumSolver {
     /// The same problem with a weight of `by_area` (N/mm^2) in the plane of the sheet.
     pub fn with_weight(mut self, by_area: [f64; 2]) -> Result<Self, Fault> {
         if !by_area.iter().all(|component| component.is_finite()) {
-            return Err(Fault::from(format!("the weight {by_area:?} N/mm^2 is not finite")));
+            refuse!("the weight {by_area:?} N/mm^2 is not finite");
         }
         self.weight = by_area;
         Ok(self)
@@ -246,11 +247,13 @@ impl EquilibriumSolver {
     /// An error if the supports leave a sheet free to move as a rigid body and its weight does not
     /// hold it.
     pub fn check_supports(&self, sheet: &Sheet) -> Result<(), Fault> {
-        let remedy = "support at least three degrees of freedom, such as one clamp or a pin and a roller; \
-                      one pin is enough for a sheet that hangs by its weight, without a prescribed stroke, from \
-                      a point that is not its centre of gravity";
-        let what = "the supports leave the sheet free to move as a rigid body";
-        self.start(sheet).map(drop).ok_or_else(|| fault("", what, remedy))
+        self.start(sheet).map(drop).ok_or_else(|| {
+            fault!(
+                "the supports leave the sheet free to move as a rigid body: support at least three degrees of freedom, \
+                 such as one clamp or a pin and a roller; one pin is enough for a sheet that hangs by its weight, without \
+                 a prescribed stroke, from a point that is not its centre of gravity"
+            )
+        })
     }
 
     /// The unloaded sheet: flat, and turned about a nail from which it hangs; `None` if it is free
@@ -274,6 +277,8 @@ impl EquilibriumSolver {
 }
 
 fn finite(what: &str, panel: usize, value: f64) -> Result<(), Fault> {
-    let what = || format!("{what} of {value} on panel {panel} is not a finite number");
-    value.is_finite().then_some(()).ok_or_else(|| Fault::from(what()))
+    if value.is_finite() {
+        return Ok(());
+    }
+    Err(fault!("{what} of {value} on panel {panel} is not a finite number"))
 }

@@ -7,7 +7,9 @@ use crate::{
     sheet::topology::Topology,
 };
 use faer::sparse::SymbolicSparseColMat;
+use std::array::from_fn;
 use std::collections::BTreeSet;
+use std::iter::zip;
 
 /// Maximum rounds of the condition estimate, which seldom needs more than three.
 const HAGER_ROUNDS: usize = 5;
@@ -38,7 +40,7 @@ pub struct Factor {
 
 /// The indices of the six degrees of freedom of each hinge.
 fn at_hinges(topology: &Topology, free: &[Option<usize>]) -> Vec<[Option<usize>; 6]> {
-    let numbers = |panels: [usize; 2]| std::array::from_fn(|d| free[3 * panels[d / 3] + d % 3]);
+    let numbers = |panels: [usize; 2]| from_fn(|d| free[3 * panels[d / 3] + d % 3]);
     topology.sites.iter().map(|site| numbers([site.a.0, site.b.0])).collect()
 }
 
@@ -78,9 +80,7 @@ impl TangentPattern {
             Some((range.start + offset) as u32)
         };
         let slots = (at_hinges.iter())
-            .map(|numbers| {
-                std::array::from_fn(|i| std::array::from_fn(|j| slot(numbers[i]?, numbers[j]?)))
-            })
+            .map(|numbers| from_fn(|i| from_fn(|j| slot(numbers[i]?, numbers[j]?))))
             .collect();
         Self { ldl, free: free.into(), slots }
     }
@@ -88,7 +88,7 @@ impl TangentPattern {
     /// The free components of a vector with three components per panel.
     pub fn gather(&self, by_panel: &[[f64; 3]]) -> Vec<f64> {
         let mut row = vec![0.0; self.free.iter().flatten().count()];
-        for (number, component) in std::iter::zip(&self.free, by_panel.as_flattened()) {
+        for (number, component) in zip(&self.free, by_panel.as_flattened()) {
             if let Some(number) = number {
                 row[*number] = *component;
             }
@@ -99,7 +99,7 @@ impl TangentPattern {
     /// The inverse of [`gather`](Self::gather); supported components are zero.
     pub fn spread(&self, row: &[f64]) -> Vec<[f64; 3]> {
         (self.free.chunks(3))
-            .map(|numbers| std::array::from_fn(|d| numbers[d].map_or(0.0, |i| row[i])))
+            .map(|numbers| from_fn(|d| numbers[d].map_or(0.0, |i| row[i])))
             .collect()
     }
 
@@ -112,9 +112,9 @@ impl TangentPattern {
     /// The lower triangle of H from the 6 x 6 blocks of the hinges.
     pub fn assemble(&self, blocks: impl Iterator<Item = [[f64; 6]; 6]>) -> Vec<f64> {
         let mut values = vec![0.0; self.ldl.entries().1.len()];
-        for (slots, block) in std::iter::zip(&self.slots, blocks) {
-            for (slots, entries) in std::iter::zip(slots, block) {
-                for (slot, entry) in std::iter::zip(slots, entries) {
+        for (slots, block) in zip(&self.slots, blocks) {
+            for (slots, entries) in zip(slots, block) {
+                for (slot, entry) in zip(slots, entries) {
                     if let Some(slot) = slot {
                         values[*slot as usize] += entry;
                     }
@@ -141,7 +141,7 @@ impl TangentPattern {
     /// H + shift, for a diagonal shift.
     pub fn shifted(&self, values: &[f64], shift: impl Iterator<Item = f64>) -> Vec<f64> {
         let mut values = values.to_vec();
-        for (&slot, shift) in std::iter::zip(self.diagonal_slots(), shift) {
+        for (&slot, shift) in zip(self.diagonal_slots(), shift) {
             values[slot] += shift;
         }
         values
@@ -172,7 +172,7 @@ impl TangentPattern {
         let mut factor = memory;
         self.ldl.factorise(values, &mut factor)?;
         let (mut negative_pivots, mut pivot_ratio) = (0, 1.0_f64);
-        for (pivot, &slot) in std::iter::zip(self.ldl.pivots(&factor), self.diagonal_slots()) {
+        for (pivot, &slot) in zip(self.ldl.pivots(&factor), self.diagonal_slots()) {
             // Relative to its original diagonal entry of H.
             let ratio = pivot / values[slot].abs();
             if !ratio.is_finite() || ratio == 0.0 {
@@ -204,9 +204,9 @@ impl TangentPattern {
             }
         }
         let inverse = |x: &[f64]| -> Vec<f64> {
-            let mut scaled: Vec<f64> = std::iter::zip(x, &root).map(|(x, r)| x * r).collect();
+            let mut scaled: Vec<f64> = zip(x, &root).map(|(x, r)| x * r).collect();
             self.solve(factor, &mut scaled);
-            std::iter::zip(scaled, &root).map(|(x, r)| x * r).collect()
+            zip(scaled, &root).map(|(x, r)| x * r).collect()
         };
         let (mut x, mut max) = (vec![1.0 / n as f64; n], 0.0);
         for _ in 0..HAGER_ROUNDS {

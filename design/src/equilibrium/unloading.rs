@@ -8,17 +8,16 @@
 
 use crate::{
     equilibrium::{
-        corrector::Branch,
         hinged_sheet::HingedSheet,
         load_step::LoadStep,
-        potential::PathStage,
+        potential::{Branch, PathStage},
         solver::EquilibriumSolver,
         supports::{Dof, Support, hold_rigid_body},
     },
     hinge_law::Order,
     sheet::{cut_sheet::Sheet, kinematics::Configuration},
 };
-use support::fault::Fault;
+use support::{Fault, fault};
 
 /// Number of steps in which the loads are taken off.
 const STEPS: usize = 10;
@@ -52,14 +51,14 @@ impl EquilibriumSolver {
         };
         let what = "without the supports that moved it the sheet is free to move as a rigid body, and its \
                     unloaded position is undetermined. Hold it by supports that do not move";
-        free.check_supports(sheet).map_err(|_| Fault::from(what)).map(|()| free)
+        free.check_supports(sheet).map_err(|_| fault!("{what}")).map(|()| free)
     }
 
     /// The forces (F_x, F_y, M) on the free panels that balance a configuration without loads;
     /// `None` if its energy is not finite.
     fn holding(&self, sheet: HingedSheet, configuration: Configuration) -> Option<Vec<[f64; 3]>> {
-        let potential = Branch::new(self, sheet, PathStage::Actuation).potential(0.0);
-        let state = potential.state_up_to(configuration, Order::Forces)?;
+        let branch = Branch::new(self, sheet, PathStage::Actuation);
+        let state = branch.state(0.0, configuration, Order::Forces)?;
         Some(self.pattern.spread(&state.gradient))
     }
 }

@@ -15,16 +15,17 @@
 
 use crate::{
     equilibrium::{
-        corrector::Branch,
         hinged_sheet::HingedSheet,
         load_step::{LoadStep, Status},
-        potential::{PathStage, moved},
+        potential::{Branch, PathStage, moved},
         predictor::PathPoint,
         solver::EquilibriumSolver,
     },
     hinge_law::{HingeEnergy, Order, PreparedLaw},
 };
 use hinge::{HingeDeformation, HingeDesign};
+use std::array::from_fn;
+use std::iter::zip;
 use support::vectors::dot;
 
 /// Maximum distance of an equilibrium from the equilibrium of the linearised law (rad, or panel
@@ -64,10 +65,10 @@ impl LinearisedLaw<'_> {
         let strain = [to.a - from.a, to.s - from.s, to.theta - from.theta];
         let by_strain = known.tangent.map(|row| dot(&row, &strain));
         let by_design = (known.mixed).map(|row| dot(&row.to_array(), &self.changes[hinge]));
-        let start: [f64; 3] = std::array::from_fn(|c| known.forces[c] + by_design[c]);
+        let start: [f64; 3] = from_fn(|c| known.forces[c] + by_design[c]);
         HingeEnergy {
             w: known.w + dot(&start, &strain) + 0.5 * dot(&by_strain, &strain),
-            forces: std::array::from_fn(|c| start[c] + by_strain[c]),
+            forces: from_fn(|c| start[c] + by_strain[c]),
             ..known
         }
     }
@@ -130,15 +131,13 @@ impl EquilibriumSolver {
         }
         let changes = changes(sheet, designs);
         let mut branch = Branch::new(self, sheet, stage);
-        std::iter::zip(ends, known)
-            .map(|(at, known)| branch.load_step_near(*at, known, &changes))
-            .collect()
+        zip(ends, known).map(|(at, known)| branch.load_step_near(*at, known, &changes)).collect()
     }
 }
 
 /// Changes of w_lig (mm), alpha (rad) and rho_f of all hinges since the given designs.
 fn changes(sheet: HingedSheet, since: &[HingeDesign]) -> Vec<[f64; 3]> {
-    let designs = std::iter::zip(sheet.sheet.designs(), since);
+    let designs = zip(sheet.sheet.designs(), since);
     let changes = designs.map(|(to, from)| {
         [to.w_lig - from.w_lig, to.alpha - from.alpha, to.fillet_ratio - from.fillet_ratio]
     });
@@ -154,7 +153,7 @@ impl Branch<'_> {
     ) -> Option<LoadStep> {
         let start = self.carried_over(at, known, changes)?;
         let found = self.balanced(start.clone())?;
-        if self.moved(&found, &start) > NEARBY {
+        if self.distance(&found.state, &start) > NEARBY {
             return None;
         }
         // An unstable state is `Almost` an equilibrium, too.

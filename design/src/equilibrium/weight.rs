@@ -9,18 +9,36 @@
 //! ```
 
 use crate::{
-    equilibrium::panel_force::PanelForce,
-    geometry::plane::{I, add, complex, cross, dot, turn},
+    geometry::plane::{I, complex, cross, dot, turn},
     sheet::{
         cut_sheet::{Panel, Sheet, SheetGradient},
-        kinematics::Configuration,
+        kinematics::{Configuration, Motion},
     },
 };
 use faer::c64;
+use std::iter::zip;
 
 /// Distance of the centre of gravity from a nail, relative to the size of the sheet, below which
 /// the sheet hangs in no definite position.
 const BALANCED: f64 = 1e-6;
+
+/// A force on a panel in one of its positions, with its derivative.
+#[derive(Clone, Copy, Default)]
+pub(crate) struct PanelForce {
+    /// (F_x, F_y, M) about the reference point of the panel.
+    pub force: Motion,
+    /// Minus the derivative of `force` in the motion of the panel.
+    pub stiffness: [Motion; 3],
+    /// The potential energy of the force (N mm).
+    pub potential: f64,
+}
+
+impl PanelForce {
+    /// The resistance of the stiffness to a motion.
+    pub(crate) fn resistance(&self, motion: &Motion) -> Motion {
+        self.stiffness.map(|row| row[0] * motion[0] + row[1] * motion[1] + row[2] * motion[2])
+    }
+}
 
 /// The weight of a panel in one of its rotations.
 #[derive(Clone, Copy)]
@@ -39,7 +57,7 @@ impl PanelWeight {
         }
     }
 
-    fn on(&self, panel: &Panel, [u_x, u_y, _]: [f64; 3]) -> PanelForce {
+    fn on(&self, panel: &Panel, [u_x, u_y, _]: Motion) -> PanelForce {
         let flat = complex(panel.centroid) - complex(panel.reference);
         let mut stiffness = [[0.0; 3]; 3];
         stiffness[2][2] = dot(self.arm, self.force);
@@ -56,9 +74,9 @@ impl PanelWeight {
 pub(crate) fn weights_of_panels<'a>(
     sheet: &'a Sheet,
     by_area: [f64; 2],
-    configuration: &'a [[f64; 3]],
+    configuration: &'a [Motion],
 ) -> impl Iterator<Item = PanelForce> + 'a {
-    std::iter::zip(&sheet.panels, configuration)
+    zip(&sheet.panels, configuration)
         .map(move |(panel, &motion)| PanelWeight::new(panel, by_area, motion[2]).on(panel, motion))
 }
 
@@ -68,17 +86,17 @@ pub(crate) fn add_weight_gradient(
     by_sheet: &mut SheetGradient,
     sheet: &Sheet,
     by_area: [f64; 2],
-    configuration: &[[f64; 3]],
-    lambda: &[[f64; 3]],
+    configuration: &[Motion],
+    lambda: &[Motion],
 ) {
-    for (k, (panel, [x, y, turned])) in std::iter::zip(&sheet.panels, lambda).enumerate() {
+    for (k, (panel, [x, y, turned])) in zip(&sheet.panels, lambda).enumerate() {
         let weight = PanelWeight::new(panel, by_area, configuration[k][2]);
         let spin = I * turn(configuration[k][2]) * *turned;
         let motion = c64::new(*x, *y) + I * weight.arm * *turned;
         by_sheet.areas[k] += dot(complex(by_area), motion);
         let by_arm = weight.force * spin.conj();
-        add(&mut by_sheet.centroids[k], by_arm);
-        add(&mut by_sheet.references[k], -by_arm);
+        by_sheet.centroids[k] += by_arm;
+        by_sheet.references[k] -= by_arm;
     }
 }
 

@@ -9,14 +9,11 @@
 //! spacing of the samples.
 
 use crate::geometry::polygon::nearest_on_outline;
+use support::Point;
 
 /// The distance (mm^2) with the weight w_cov of the second sum, and its gradient in `points`;
 /// neither `points` nor `target` may be empty.
-pub fn chamfer(
-    points: &[[f64; 2]],
-    target: &[[f64; 2]],
-    coverage_weight: f64,
-) -> (f64, Vec<[f64; 2]>) {
+pub fn chamfer(points: &[Point], target: &[Point], coverage_weight: f64) -> (f64, Vec<Point>) {
     let mut gradient = vec![[0.0; 2]; points.len()];
     let precision = 1.0 / points.len() as f64;
     let mut value = 0.0;
@@ -36,12 +33,12 @@ pub fn chamfer(
     (value, gradient)
 }
 
-fn squared(p: [f64; 2], q: [f64; 2]) -> f64 {
+fn squared(p: Point, q: Point) -> f64 {
     (p[0] - q[0]).powi(2) + (p[1] - q[1]).powi(2)
 }
 
 /// Adds the gradient of weight |p - t|^2 with respect to p.
-fn pull(gradient: &mut [f64; 2], weight: f64, p: [f64; 2], t: [f64; 2]) {
+fn pull(gradient: &mut Point, weight: f64, p: Point, t: Point) {
     for axis in 0..2 {
         gradient[axis] += 2.0 * weight * (p[axis] - t[axis]);
     }

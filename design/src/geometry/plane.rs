@@ -36,9 +36,3 @@ pub fn dot(a: c64, b: c64) -> f64 {
 pub fn cross(a: c64, b: c64) -> f64 {
     a.re * b.im - a.im * b.re
 }
-
-/// Adds `z` to a gradient stored as a point.
-pub fn add(gradient: &mut [f64; 2], z: c64) {
-    gradient[0] += z.re;
-    gradient[1] += z.im;
-}

@@ -1,22 +1,23 @@
 //! Polygons: clipping, distances and intersections of convex ones, counter-clockwise;
 //! self-crossings of any.
 
+use crate::geometry::plane::{complex, cross, dot, point};
+use faer::c64;
+use support::Point;
+
 /// The intersection of two convex polygons.
-pub fn common(polygon: &[[f64; 2]], other: &[[f64; 2]]) -> Vec<[f64; 2]> {
-    edges(other).fold(polygon.to_vec(), |part, (p, q)| {
-        let (dx, dy) = (q[0] - p[0], q[1] - p[1]);
-        clip(&part, |[x, y]| dy * (x - p[0]) - dx * (y - p[1]))
-    })
+pub fn common(polygon: &[Point], other: &[Point]) -> Vec<Point> {
+    edges(other).fold(polygon.to_vec(), |part, edge| clip(&part, |at| -side(edge, at)))
 }
 
 /// Area of any simple polygon, negative if it is clockwise (mm^2).
-pub fn area(polygon: &[[f64; 2]]) -> f64 {
+pub fn area(polygon: &[Point]) -> f64 {
     let twice: f64 = edges(polygon).map(|(p, q)| p[0] * q[1] - p[1] * q[0]).sum();
     0.5 * twice
 }
 
 /// The polygon with its vertices in counter-clockwise order.
-pub fn counter_clockwise(polygon: &[[f64; 2]]) -> Vec<[f64; 2]> {
+pub fn counter_clockwise(polygon: &[Point]) -> Vec<Point> {
     let mut polygon = polygon.to_vec();
     if area(&polygon) < 0.0 {
         polygon.reverse();
@@ -25,7 +26,7 @@ pub fn counter_clockwise(polygon: &[[f64; 2]]) -> Vec<[f64; 2]> {
 }
 
 /// The part of a convex polygon in which the linear function `height` is negative.
-pub fn clip(polygon: &[[f64; 2]], height: impl Fn([f64; 2]) -> f64) -> Vec<[f64; 2]> {
+pub fn clip(polygon: &[Point], height: impl Fn(Point) -> f64) -> Vec<Point> {
     let mut kept = Vec::new();
     for (p, q) in edges(polygon) {
         let (below_p, below_q) = (height(p), height(q));
@@ -34,22 +35,19 @@ pub fn clip(polygon: &[[f64; 2]], height: impl Fn([f64; 2]) -> f64) -> Vec<[f64;
         }
         if (below_p <= 0.0) != (below_q <= 0.0) {
             let f = below_p / (below_p - below_q);
-            kept.push([p[0] + f * (q[0] - p[0]), p[1] + f * (q[1] - p[1])]);
+            kept.push(between(p, q, f));
         }
     }
     kept
 }
 
 /// Whether a convex counter-clockwise polygon contains a point; its border belongs to it.
-pub fn contains(polygon: &[[f64; 2]], point: [f64; 2]) -> bool {
-    edges(polygon).all(|(p, q)| {
-        let d = [q[0] - p[0], q[1] - p[1]];
-        side((p, q), point) >= -1e-9 * (d[0] * d[0] + d[1] * d[1])
-    })
+pub fn contains(polygon: &[Point], point: Point) -> bool {
+    edges(polygon).all(|(p, q)| side((p, q), point) >= -1e-9 * vector(p, q).norm_sqr())
 }
 
 /// Distance from a point to a convex counter-clockwise polygon; infinite if it is empty (mm).
-pub fn distance_to_polygon(point: [f64; 2], polygon: &[[f64; 2]]) -> f64 {
+pub fn distance_to_polygon(point: Point, polygon: &[Point]) -> f64 {
     if !polygon.is_empty() && contains(polygon, point) {
         return 0.0;
     }
@@ -58,24 +56,24 @@ pub fn distance_to_polygon(point: [f64; 2], polygon: &[[f64; 2]]) -> f64 {
 
 /// Distance from a point, inside or outside, to the outline of a polygon with at least one corner
 /// (mm).
-pub fn distance_to_outline(point: [f64; 2], polygon: &[[f64; 2]]) -> f64 {
+pub fn distance_to_outline(point: Point, polygon: &[Point]) -> f64 {
     distance(point, nearest_on_outline(point, polygon))
 }
 
 /// Distance between two points (mm).
-pub fn distance(p: [f64; 2], q: [f64; 2]) -> f64 {
-    f64::hypot(q[0] - p[0], q[1] - p[1])
+pub fn distance(p: Point, q: Point) -> f64 {
+    vector(p, q).norm()
 }
 
 /// The mean of points.
-pub fn mean(points: &[[f64; 2]]) -> [f64; 2] {
+pub fn mean(points: &[Point]) -> Point {
     let sum = |axis: usize| points.iter().map(|point| point[axis]).sum::<f64>();
     [sum(0), sum(1)].map(|sum| sum / points.len() as f64)
 }
 
 /// The minimum and maximum coordinates of points: the lower left and the upper right corner of
 /// their bounding box.
-pub fn bounds(points: impl IntoIterator<Item = [f64; 2]>) -> [[f64; 2]; 2] {
+pub fn bounds(points: impl IntoIterator<Item = Point>) -> [Point; 2] {
     let nothing = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
     points.into_iter().fold(nothing, |[low, high], [x, y]| {
         [[low[0].min(x), low[1].min(y)], [high[0].max(x), high[1].max(y)]]
@@ -88,51 +86,59 @@ pub fn size([low, high]: [[f64; 2]; 2]) -> [f64; 2] {
 }
 
 /// Distance from a point to the segment from `a` to `b` (mm).
-pub fn distance_to_segment(point: [f64; 2], a: [f64; 2], b: [f64; 2]) -> f64 {
+pub fn distance_to_segment(point: Point, a: Point, b: Point) -> f64 {
     distance(point, nearest_on_segment(point, a, b))
 }
 
 /// Distance between two segments; zero if they cross (mm).
 pub fn distance_between_segments(s: [[f64; 2]; 2], t: [[f64; 2]; 2]) -> f64 {
     let separates =
-        |[a, b]: [[f64; 2]; 2], [p, q]: [[f64; 2]; 2]| side((a, b), p) * side((a, b), q) < 0.0;
+        |[a, b]: [Point; 2], [p, q]: [Point; 2]| side((a, b), p) * side((a, b), q) < 0.0;
     if separates(s, t) && separates(t, s) {
         return 0.0;
     }
-    let from_ends = |s: [[f64; 2]; 2], t: [[f64; 2]; 2]| {
+    let from_ends = |s: [Point; 2], t: [Point; 2]| {
         let [p, q] = s.map(|end| distance_to_segment(end, t[0], t[1]));
         p.min(q)
     };
     from_ends(s, t).min(from_ends(t, s))
 }
 
-/// The point of the segment from `a` to `b` nearest to `point`.
-pub fn nearest_on_segment(point: [f64; 2], a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
-    let (d, e) = ([b[0] - a[0], b[1] - a[1]], [point[0] - a[0], point[1] - a[1]]);
-    let square = d[0] * d[0] + d[1] * d[1];
-    let along =
-        if square > 0.0 { ((d[0] * e[0] + d[1] * e[1]) / square).clamp(0.0, 1.0) } else { 0.0 };
-    [a[0] + along * d[0], a[1] + along * d[1]]
+/// The point of the segment from `a` to `b` nearest to `at`.
+pub fn nearest_on_segment(at: Point, a: Point, b: Point) -> Point {
+    let whole = vector(a, b);
+    let square = whole.norm_sqr();
+    let along = dot(whole, vector(a, at)) / square;
+    if square > 0.0 { between(a, b, along.clamp(0.0, 1.0)) } else { a }
+}
+
+/// The vector from `p` to `q`.
+fn vector(p: Point, q: Point) -> c64 {
+    complex(q) - complex(p)
+}
+
+/// The point of the line from `p` to `q` at a fraction of their distance.
+fn between(p: Point, q: Point, fraction: f64) -> Point {
+    point(complex(p) + vector(p, q) * fraction)
 }
 
 /// The point on the border of a closed polygon nearest to `point`.
-pub fn nearest_on_outline(point: [f64; 2], polygon: &[[f64; 2]]) -> [f64; 2] {
-    let squared = |[x, y]: [f64; 2]| (x - point[0]).powi(2) + (y - point[1]).powi(2);
+pub fn nearest_on_outline(point: Point, polygon: &[Point]) -> Point {
     let feet = edges(polygon).map(|(a, b)| {
         let foot = nearest_on_segment(point, a, b);
-        (squared(foot), foot)
+        (vector(point, foot).norm_sqr(), foot)
     });
     let nearest = feet.min_by(|p, q| p.0.total_cmp(&q.0));
     nearest.map_or(point, |(_, foot)| foot)
 }
 
 /// The edges of a closed polygon.
-pub fn edges(polygon: &[[f64; 2]]) -> impl Iterator<Item = ([f64; 2], [f64; 2])> {
+pub fn edges(polygon: &[Point]) -> impl Iterator<Item = (Point, Point)> {
     (0..polygon.len()).map(|i| (polygon[i], polygon[(i + 1) % polygon.len()]))
 }
 
 /// A common point of two edges of a closed polygon, other than the vertices between neighbours.
-pub fn self_crossing(points: &[[f64; 2]]) -> Option<[f64; 2]> {
+pub fn self_crossing(points: &[Point]) -> Option<Point> {
     crossing([points])
 }
 
@@ -140,7 +146,7 @@ pub fn self_crossing(points: &[[f64; 2]]) -> Option<[f64; 2]> {
 ///
 /// Neighbouring edges are near each other: parts of the outlines whose boxes do not overlap are not
 /// compared.
-pub fn crossing(polygons: impl IntoIterator<Item: AsRef<[[f64; 2]]>>) -> Option<[f64; 2]> {
+pub fn crossing(polygons: impl IntoIterator<Item: AsRef<[Point]>>) -> Option<Point> {
     let (mut all, mut after): (Vec<Edge>, Vec<usize>) = Default::default();
     for polygon in polygons {
         let (first, count) = (all.len(), polygon.as_ref().len());
@@ -156,7 +162,7 @@ pub fn crossing(polygons: impl IntoIterator<Item: AsRef<[[f64; 2]]>>) -> Option<
 /// The bounding boxes of the parts of an outline: part 1 is all of it, and part k consists of the
 /// parts 2 k and 2 k + 1, down to the single edges.
 struct PartBoxes {
-    boxes: Vec<[[f64; 2]; 2]>,
+    boxes: Vec<[Point; 2]>,
     /// Number of the parts that are single edges, a power of two; those beyond the last edge are
     /// empty.
     leaves: usize,
@@ -181,7 +187,7 @@ impl PartBoxes {
 
     /// What `found` gives for the first pair of edges whose boxes overlap, of those for which it
     /// gives anything.
-    fn first(&self, found: &impl Fn(usize, usize) -> Option<[f64; 2]>) -> Option<[f64; 2]> {
+    fn first(&self, found: &impl Fn(usize, usize) -> Option<Point>) -> Option<Point> {
         (1..self.leaves).find_map(|part| self.first_pair(2 * part, 2 * part + 1, found))
     }
 
@@ -191,8 +197,8 @@ impl PartBoxes {
         &self,
         part: usize,
         other: usize,
-        found: &impl Fn(usize, usize) -> Option<[f64; 2]>,
-    ) -> Option<[f64; 2]> {
+        found: &impl Fn(usize, usize) -> Option<Point>,
+    ) -> Option<Point> {
         let [low, high] = self.boxes[part];
         let [other_low, other_high] = self.boxes[other];
         let overlap = |c: usize| high[c] >= other_low[c] && other_high[c] >= low[c];
@@ -210,22 +216,22 @@ impl PartBoxes {
     }
 }
 
-type Edge = ([f64; 2], [f64; 2]);
+type Edge = (Point, Point);
 
 /// Distance of a point from the line of an edge times the length of the edge, positive on its left.
-pub fn side((a, b): Edge, point: [f64; 2]) -> f64 {
-    (b[0] - a[0]) * (point[1] - a[1]) - (b[1] - a[1]) * (point[0] - a[0])
+pub fn side((a, b): Edge, point: Point) -> f64 {
+    cross(vector(a, b), vector(a, point))
 }
 
 /// A common point of two segments whose boxes overlap, unless one of them is on one side of the
 /// other.
-fn shared_point((p, q): Edge, (r, s): Edge) -> Option<[f64; 2]> {
+fn shared_point((p, q): Edge, (r, s): Edge) -> Option<Point> {
     let (side_p, side_q) = (side((r, s), p), side((r, s), q));
     if side_p * side_q > 0.0 || side((p, q), r) * side((p, q), s) > 0.0 {
         return None;
     }
     let along = if side_p == side_q { 0.0 } else { side_p / (side_p - side_q) };
-    Some([0, 1].map(|c| p[c] + along * (q[c] - p[c])))
+    Some(between(p, q, along))
 }
 
 #[cfg(test)]

@@ -8,6 +8,7 @@ use i_overlay::float::single::SingleFloatOverlay;
 use i_overlay::mesh::float::outline::offset::OutlineOffset;
 use i_overlay::mesh::float::style::{LineJoin, OutlineStyle};
 use std::f64::consts::FRAC_PI_8;
+use support::Point;
 
 /// Angle of the pieces of an arc (rad).
 const ARC: f64 = 0.2;
@@ -100,12 +101,12 @@ impl Region {
     }
 
     /// Lower left and upper right corner of the bounding box.
-    pub fn bounds(&self) -> [[f64; 2]; 2] {
+    pub fn bounds(&self) -> [Point; 2] {
         polygon::bounds(self.contours().flatten().copied())
     }
 
     /// Width and height of the bounding box.
-    pub fn extent(&self) -> [f64; 2] {
+    pub fn extent(&self) -> Point {
         let [low, high] = self.bounds();
         [0, 1].map(|c| high[c] - low[c])
     }
@@ -117,7 +118,7 @@ impl Region {
     }
 
     /// Whether the region contains a point; the border belongs to one of its sides.
-    pub fn contains(&self, [x, y]: [f64; 2]) -> bool {
+    pub fn contains(&self, [x, y]: Point) -> bool {
         let edges = self.contours().flat_map(|contour| polygon::edges(contour));
         let passed = edges.filter(|(p, q)| {
             (p[1] > y) != (q[1] > y) && x < p[0] + (y - p[1]) / (q[1] - p[1]) * (q[0] - p[0])
@@ -126,7 +127,7 @@ impl Region {
     }
 
     /// The image under a map that keeps the orientation.
-    pub fn map(&self, map: impl Fn([f64; 2]) -> [f64; 2]) -> Self {
+    pub fn map(&self, map: impl Fn(Point) -> Point) -> Self {
         let contour = |contour: &Contour| contour.iter().map(|point| map(*point)).collect();
         let polygons = self.polygons.iter();
         Self { polygons: polygons.map(|contours| contours.iter().map(contour).collect()).collect() }
@@ -134,7 +135,7 @@ impl Region {
 
     /// Without the corners that are nearer than `tolerance` to the line between their neighbours
     /// (Douglas and Peucker, Cartographica 10, 1973, 112), unless they are `fixed`.
-    pub fn simplified(&self, tolerance: f64, fixed: impl Fn([f64; 2]) -> bool) -> Self {
+    pub fn simplified(&self, tolerance: f64, fixed: impl Fn(Point) -> bool) -> Self {
         let simple: Vec<Contour> =
             self.contours().map(|contour| simplified(contour, tolerance, &fixed)).collect();
         // A gap narrower than the tolerance has become a line.
@@ -160,7 +161,7 @@ pub fn as_seen(panels: Vec<Contour>, drawing: &Region) -> Region {
     Region::union_of(grown.flatten().collect()).offset(-gap, Corners::Round)
 }
 
-fn simplified(contour: &[[f64; 2]], tolerance: f64, fixed: impl Fn([f64; 2]) -> bool) -> Contour {
+fn simplified(contour: &[Point], tolerance: f64, fixed: impl Fn(Point) -> bool) -> Contour {
     let all = 0..contour.len();
     let mut ends: Vec<usize> = all.clone().filter(|i| fixed(contour[*i])).collect();
     let first = *ends.first().unwrap_or(&0);
@@ -181,7 +182,7 @@ fn simplified(contour: &[[f64; 2]], tolerance: f64, fixed: impl Fn([f64; 2]) -> 
 }
 
 /// Adds the kept points of a line but its last.
-fn keep(line: &[[f64; 2]], tolerance: f64, kept: &mut Contour) {
+fn keep(line: &[Point], tolerance: f64, kept: &mut Contour) {
     let (first, last) = (line[0], line[line.len() - 1]);
     let off = |i: &usize| polygon::distance_to_segment(line[*i], first, last);
     let farthest = (1..line.len() - 1).max_by(|i, j| off(i).total_cmp(&off(j)));

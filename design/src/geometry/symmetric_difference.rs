@@ -19,12 +19,13 @@ use crate::geometry::{
     plane::{complex, point, turn},
     polygon::{edges, side},
 };
+use support::Point;
 
 /// Rotation of the polygons before they are cut into slabs (rad).
 const OBLIQUE: f64 = 0.7;
 
 /// A and its gradient in the vertices of P, the `outline`.
-pub fn symmetric_difference(outline: &[[f64; 2]], target: &[[f64; 2]]) -> (f64, Vec<[f64; 2]>) {
+pub fn symmetric_difference(outline: &[Point], target: &[Point]) -> (f64, Vec<Point>) {
     let mut all = oblique_edges(target, -1);
     for edge in &mut all {
         edge.ends = None;
@@ -36,14 +37,14 @@ pub fn symmetric_difference(outline: &[[f64; 2]], target: &[[f64; 2]]) -> (f64, 
     for (slab, edges) in heights.windows(2).zip(by_slabs(&all, &heights)) {
         area += trapezoids([slab[0], slab[1]], &edges, &mut gradient);
     }
-    let back = |slope: [f64; 2]| point(complex(slope) * turn(-OBLIQUE));
+    let back = |slope: Point| point(complex(slope) * turn(-OBLIQUE));
     (area, gradient.into_iter().map(back).collect())
 }
 
 /// An edge with height.
 struct ObliqueEdge {
-    low: [f64; 2],
-    high: [f64; 2],
+    low: Point,
+    high: Point,
     /// Change of w across the edge from left to right.
     step: i32,
     /// Indices of the lower and the upper end among the vertices; `None` for the edges of T.
@@ -51,10 +52,10 @@ struct ObliqueEdge {
 }
 
 /// The edges of a rotated polygon inside which w is larger by `inside` if it is counter-clockwise.
-fn oblique_edges(polygon: &[[f64; 2]], inside: i32) -> Vec<ObliqueEdge> {
-    let turned = |vertex: &[f64; 2]| point(complex(*vertex) * turn(OBLIQUE));
-    let turned: Vec<[f64; 2]> = polygon.iter().map(turned).collect();
-    let edge = |(i, (from, to)): (usize, ([f64; 2], [f64; 2]))| {
+fn oblique_edges(polygon: &[Point], inside: i32) -> Vec<ObliqueEdge> {
+    let turned = |vertex: &Point| point(complex(*vertex) * turn(OBLIQUE));
+    let turned: Vec<Point> = polygon.iter().map(turned).collect();
+    let edge = |(i, (from, to)): (usize, (Point, Point))| {
         let next = (i + 1) % polygon.len();
         let (low, high, step, ends) = if from[1] < to[1] {
             (from, to, -inside, [i, next])

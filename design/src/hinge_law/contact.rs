@@ -11,7 +11,7 @@
 use crate::hinge_law::law::HingeEnergy;
 use hinge::HingeDeformation;
 use std::f64::consts::PI;
-use support::fault::Fault;
+use support::{Fault, refuse};
 
 /// The constants of the barrier.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,11 +34,10 @@ impl Contact {
             && phi_min < phi_cut
             && phi_cut <= 0.0;
         if !valid {
-            let what = format!(
+            refuse!(
                 "contact with stiffness = {stiffness} N mm, phi_min = {phi_min} rad, phi_cut = {phi_cut} rad \
                  violates stiffness > 0 and -pi < phi_min < phi_cut <= 0 (the closed sheet has phi = 0)"
             );
-            return Err(Fault::from(what));
         }
         Ok(Self { stiffness, phi_min, phi_cut })
     }

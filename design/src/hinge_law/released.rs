@@ -3,6 +3,7 @@
 
 use crate::hinge_law::law::{HingeEnergy, Order, PreparedLaw};
 use hinge::{HingeDeformation, HingeDesign, ReleasedHinge};
+use std::iter::zip;
 use surrogate::Springback;
 
 /// The law of the unloaded hinges of one sheet, in its order. It knows no damage, and does not
@@ -18,7 +19,7 @@ impl PreparedLaw for ReleasedLaw<'_> {
             tangent: hinge.stiffness,
             ..HingeEnergy::default()
         };
-        std::iter::zip(deformations, self.0).map(energy).collect()
+        zip(deformations, self.0).map(energy).collect()
     }
 }
 
@@ -47,7 +48,7 @@ impl Release<'_> {
         let square = self.scale * self.scale;
         let force_units = [square, square, square * self.scale];
         let energies = law.energies(states, Order::Forces);
-        std::iter::zip(designs, states)
+        zip(designs, states)
             .zip(energies)
             .map(|((design, reached), energy)| {
                 let forces = std::array::from_fn(|i| energy.forces[i] / force_units[i]);

@@ -19,6 +19,7 @@ use crate::hinge_law::law::{
     PreparedLaw,
 };
 use hinge::{HingeDeformation, HingeDesign, Jet, TrainingDomain};
+use std::iter::zip;
 use std::{array::from_fn, ops::Deref, sync::Arc};
 use surrogate::{Prepared, Surrogate};
 
@@ -104,7 +105,7 @@ impl<S: Deref<Target = Surrogate>> PreparedSurrogate<S> {
         deformations: &[HingeDeformation],
     ) -> (Vec<HingeDeformation>, Vec<Option<Continuation>>) {
         let domain = self.surrogate.domain();
-        let hinges = std::iter::zip(&self.designs, deformations);
+        let hinges = zip(&self.designs, deformations);
         hinges
             .map(|(design, deformation)| {
                 let beyond = domain.gauge(design, deformation) > 1.0;
@@ -134,11 +135,8 @@ impl<S: Deref<Target = Surrogate>> PreparedLaw for PreparedSurrogate<S> {
     fn damage(&self, deformations: &[HingeDeformation], with_gradient: bool) -> Vec<HingeDamage> {
         let (mapped, continuations) = self.mapped(deformations);
         let designs = self.prepared.designs();
-        if !with_gradient {
-            return self.surrogate.damage_values(designs, &mapped);
-        }
-        let mut damages = self.surrogate.damage(designs, &mapped);
-        for (h, damage) in damages.iter_mut().enumerate() {
+        let mut damages = self.surrogate.damage(designs, &mapped, with_gradient);
+        for (h, damage) in damages.iter_mut().enumerate().filter(|_| with_gradient) {
             for gradient in [&mut damage.gradient, &mut damage.peak_gradient] {
                 gradient.design.alpha *= self.angle_slopes[h];
                 if let Some(continuation) = &continuations[h] {
@@ -154,7 +152,7 @@ impl<S: Deref<Target = Surrogate>> PreparedLaw for PreparedSurrogate<S> {
     }
 
     fn inside(&self, deformations: &[HingeDeformation]) -> Vec<bool> {
-        std::iter::zip(&self.designs, deformations)
+        zip(&self.designs, deformations)
             .map(|(design, deformation)| self.surrogate.domain().contains(design, deformation))
             .collect()
     }

@@ -10,23 +10,24 @@ use crate::geometry::{
     polygon::mean,
 };
 use faer::c64;
+use support::Point;
 
 /// The centroid of the area inside an outline.
-pub fn of(outline: &[[f64; 2]]) -> [f64; 2] {
+pub fn of(outline: &[Point]) -> Point {
     let middle = mean(outline);
     let (area, moment) = moments(outline, middle);
     point(complex(middle) + moment / (3.0 * area))
 }
 
 /// The gradient in the points of an outline from that in its points relative to its centre.
-pub(crate) fn pullback(outline: &[[f64; 2]], moved: &[[f64; 2]]) -> Vec<[f64; 2]> {
+pub(crate) fn pullback(outline: &[Point], moved: &[Point]) -> Vec<Point> {
     let force: c64 = moved.iter().map(|slope| complex(*slope)).sum();
     let relative = std::iter::zip(moved, by_centroid(outline, force));
     relative.map(|(moved, by_centre)| point(complex(*moved) - by_centre)).collect()
 }
 
 /// 2 A and the sum of (p_i + p_i+1) (p_i x p_i+1), relative to a point.
-fn moments(outline: &[[f64; 2]], origin: [f64; 2]) -> (f64, c64) {
+fn moments(outline: &[Point], origin: Point) -> (f64, c64) {
     let (mut twice, mut moment) = (0.0, c64::ZERO);
     for [p, q] in relative_edges(outline, origin) {
         twice += cross(p, q);
@@ -36,7 +37,7 @@ fn moments(outline: &[[f64; 2]], origin: [f64; 2]) -> (f64, c64) {
 }
 
 /// The gradient of the product of the centroid with a vector.
-fn by_centroid(outline: &[[f64; 2]], vector: c64) -> Vec<c64> {
+fn by_centroid(outline: &[Point], vector: c64) -> Vec<c64> {
     let middle = mean(outline);
     let (twice, moment) = moments(outline, middle);
     let centroid = dot(vector, moment) / (3.0 * twice);
@@ -50,7 +51,7 @@ fn by_centroid(outline: &[[f64; 2]], vector: c64) -> Vec<c64> {
     gradient
 }
 
-fn relative_edges(outline: &[[f64; 2]], origin: [f64; 2]) -> impl Iterator<Item = [c64; 2]> {
+fn relative_edges(outline: &[Point], origin: Point) -> impl Iterator<Item = [c64; 2]> {
     let at = move |i: usize| complex(outline[i % outline.len()]) - complex(origin);
     (0..outline.len()).map(move |i| [at(i), at(i + 1)])
 }

@@ -7,7 +7,6 @@ use crate::{
         load_step::LoadStep,
         warm_start::WarmStart,
     },
-    geometry::plane::add,
     hinge_law::{HingeGradient, PreparedLaw},
     objective::design_problem::{
         Deployment, DesignError, DesignProblem, Evaluation, Mechanics, Sensitivities,
@@ -16,10 +15,12 @@ use crate::{
     sheet::{
         cut_sheet::{Sheet, SheetGradient},
         ideal_deployment::ideal_deployment_pullback,
-        kinematics::deployed_pullback,
+        kinematics::{Motion, deployed_pullback},
         topology::PanelCorner,
     },
 };
+use std::iter::zip;
+use support::vectors;
 
 /// The partial derivatives of a function of a deployment.
 pub(super) struct Partials<'a> {
@@ -38,7 +39,7 @@ pub(super) struct Partials<'a> {
     /// Gradient in size and rotation of a fitted target.
     pub by_fit: [f64; 2],
     /// Gradient in the forces of the supports in the last step; `None` if all are zero.
-    pub by_reactions: Option<Vec<[f64; 3]>>,
+    pub by_reactions: Option<Vec<Motion>>,
 }
 
 /// The gradient of a function of a deployment.
@@ -49,7 +50,7 @@ pub(super) struct Gradient {
     pub sensitivities: Sensitivities,
     /// [`AdjointSums::virtual_motion`](crate::equilibrium::adjoint::AdjointSums::virtual_motion);
     /// empty without equilibrium.
-    pub virtual_motion: Vec<[f64; 3]>,
+    pub virtual_motion: Vec<Motion>,
     /// [`Evaluation::adjoint_residual`].
     pub adjoint_residual: f64,
 }
@@ -104,7 +105,7 @@ impl DesignProblem {
     ) -> Result<Gradient, DesignError> {
         let sheet = &deployment.sheet;
         let Partials { outline, by_outline, mut by_sheet, .. } = partials;
-        let outline = std::iter::zip(outline, by_outline);
+        let outline = zip(outline, by_outline);
         let by_compared = outline_pullback(sheet, deployment.final_step(), outline, &mut by_sheet);
         let (mut by_opening, mut adjoint_residual) = (None, 0.0);
         let mut virtual_motion = Vec::new();
@@ -141,7 +142,7 @@ impl DesignProblem {
         let stays = || PatternCoordinates::uniform(self.topology.grid);
         let design = DesignVector {
             pattern: if self.topology.is_full() { by_pattern } else { stays() },
-            omega: std::iter::zip(&design.omega, by_width)
+            omega: zip(&design.omega, by_width)
                 .map(|(&omega, by_width)| by_width * self.widths.slope(omega))
                 .collect(),
             opening: by_opening,
@@ -158,18 +159,18 @@ fn outline_pullback<'a>(
     compared: &LoadStep,
     outline: impl Iterator<Item = (&'a PanelCorner, &'a [f64; 2])>,
     by_sheet: &mut SheetGradient,
-) -> Vec<[f64; 3]> {
+) -> Vec<Motion> {
     let mut by_compared = vec![[0.0; 3]; sheet.panels.len()];
     for (&(panel, corner), &gradient) in outline {
         let flat = sheet.panels[panel].boundary[corner];
         let (by_motion, by_flat, by_reference) =
             deployed_pullback(&sheet.panels[panel], compared.configuration[panel], flat, gradient);
-        (0..3).for_each(|c| by_compared[panel][c] += by_motion[c]);
+        vectors::add(&mut by_compared[panel], &by_motion, 1.0);
         let by_corners = sheet.panels[panel].corner_pullback(corner, by_flat);
-        for (sum, by_corner) in std::iter::zip(&mut by_sheet.corners[panel], by_corners) {
-            add(sum, by_corner);
+        for (sum, by_corner) in zip(&mut by_sheet.corners[panel], by_corners) {
+            *sum += by_corner;
         }
-        add(&mut by_sheet.references[panel], by_reference);
+        by_sheet.references[panel] += by_reference;
     }
     by_compared
 }

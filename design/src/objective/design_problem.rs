@@ -29,10 +29,7 @@ use crate::{
 use hinge::TrainingDomain;
 use serde::Serialize;
 use std::sync::{Arc, atomic::AtomicBool};
-use support::{
-    fault::{Fault, fault},
-    verbose,
-};
+use support::{Fault, Point, fault, refuse, verbose};
 
 /// Why a design has no objective value.
 #[derive(Debug, thiserror::Error)]
@@ -82,8 +79,9 @@ impl Model {
 
     /// The same; an error if all hinges are pins.
     pub fn equilibrium(&self) -> Result<&Mechanics, Fault> {
-        let remedy = "set level = \"linear\" or \"standard\"";
-        self.mechanics().ok_or_else(|| fault("", "the level `pin` has no equilibrium", remedy))
+        self.mechanics().ok_or_else(|| {
+            fault!("the level `pin` has no equilibrium: set level = \"linear\" or \"standard\"")
+        })
     }
 
     /// The training domain of the hinge law, if it has one.
@@ -128,7 +126,7 @@ pub struct Deployment {
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Sensitivities {
     /// Gradient in the outline's corners, at fixed r and tau.
-    pub outline: [[f64; 2]; 4],
+    pub outline: [Point; 4],
     /// Gradient in (F_x, F_y, M) of each panel at full load; empty without equilibrium.
     pub loads: Vec<[f64; 3]>,
     /// Gradient in (k_a, k_s, k_theta) of each hinge; empty without equilibrium, zero unless
@@ -179,12 +177,12 @@ impl Deployment {
     }
 
     /// Positions of panel corners at full load (mm).
-    pub fn outline(&self, corners: &[PanelCorner]) -> Vec<[f64; 2]> {
+    pub fn outline(&self, corners: &[PanelCorner]) -> Vec<Point> {
         self.outline_at(self.final_step(), corners)
     }
 
     /// Positions of panel corners in a state of the sheet (mm).
-    pub(crate) fn outline_at(&self, step: &LoadStep, corners: &[PanelCorner]) -> Vec<[f64; 2]> {
+    pub(crate) fn outline_at(&self, step: &LoadStep, corners: &[PanelCorner]) -> Vec<Point> {
         let configuration = &step.configuration;
         let deployed = |&(panel, corner): &PanelCorner| {
             let flat = self.sheet.panels[panel].boundary[corner];
@@ -318,7 +316,7 @@ impl DesignProblem {
         outline: &[PanelCorner],
     ) -> Result<ObjectiveValue, DesignError> {
         if self.objective.shape.target.is_empty() {
-            return Err(Fault::from("the target has no points").into());
+            refuse!("the target has no points");
         }
         deployment.at_full_load()?;
         Ok(self.objective.evaluate(&Deployed {
@@ -347,17 +345,20 @@ impl Mechanics {
     /// strain. Its weight grows with the thickness; contact is not changed.
     pub(crate) fn scaled(&self, thickness: f64, stress: f64) -> Result<Self, Fault> {
         if !(thickness > 0.0 && stress > 0.0 && thickness.is_finite() && stress.is_finite()) {
-            let why = "a ligament, the thickness or the stresses are not positive";
-            return Err(fault("a sheet with these errors cannot exist", why, ""));
+            refuse!(
+                "a sheet with these errors cannot exist: a ligament, the thickness or the stresses are not positive"
+            );
         }
         let mut similar =
             Self { law: Arc::clone(&self.law), contact: self.contact, solver: self.solver.clone() };
         if (thickness, stress) != (1.0, 1.0) {
             let law = self.law.scaled(thickness, stress);
-            let what = "the hinge law does not determine the hinges of a sheet of another thickness, \
-                        or of a stronger material";
-            let remedy = "use level = \"standard\"";
-            similar.law = law.ok_or_else(|| fault("", what, remedy))?;
+            similar.law = law.ok_or_else(|| {
+                fault!(
+                    "the hinge law does not determine the hinges of a sheet of another thickness, or of a stronger \
+                     material: use level = \"standard\""
+                )
+            })?;
             similar.solver.weight = self.solver.weight.map(|weight| thickness * weight);
         }
         Ok(similar)

@@ -6,6 +6,7 @@ use crate::{
     hinge_law::{DamageMeasure, HingeGradient},
     objective::term::{Deployed, MeasureGradient, TermGradient},
 };
+use std::iter::zip;
 
 /// A dimensionless measure of the state of a hinge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -54,7 +55,7 @@ impl HingeMeasure {
         for (h, sums) in gradient.by_measures.iter_mut().enumerate() {
             let (value, slopes) = function(&self.along(at, h));
             mean += per_hinge * value;
-            for (sum, slope) in std::iter::zip(sums, slopes) {
+            for (sum, slope) in zip(sums, slopes) {
                 *self.of(sum) += slope;
             }
         }
@@ -65,10 +66,10 @@ impl HingeMeasure {
 /// Adds the gradient in the measures to `by_states`, the gradient in each hinge at each load step.
 pub(crate) fn add_by_states(at: &Deployed, gradient: &mut TermGradient) {
     let per_hinge = 1.0 / at.sheet.hinges.len() as f64;
-    let by_hinges = std::iter::zip(&gradient.by_measures, &mut gradient.by_states);
+    let by_hinges = zip(&gradient.by_measures, &mut gradient.by_states);
     for (h, (by_measures, by_states)) in by_hinges.enumerate() {
         let w_lig = at.sheet.hinges[h].w_lig;
-        let by_steps = std::iter::zip(by_measures, by_states);
+        let by_steps = zip(by_measures, by_states);
         for (step, (by, sums)) in at.path.iter().zip(by_steps) {
             let [eta_a, eta_s] = step.deformations[h].eta(w_lig);
             let by_width = -(by.eta_a * eta_a + by.eta_s * eta_s) / w_lig;

@@ -30,18 +30,18 @@ use crate::{
     pattern::design_vector::DesignVector,
     sheet::{
         cut_sheet::SheetGradient,
-        kinematics::{HingeMotion, deployed_corners},
-        panel_vectors::at_hinge,
+        kinematics::{HingeMotion, Motion, at_hinge, deployed_corners},
     },
 };
 use hinge::HingeDeformation;
+use std::iter::zip;
 use support::vectors::dot;
 
 /// Inputs of the equilibrium other than the design; by default the inputs of the problem.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Conditions {
     /// (F_x, F_y, M) on every panel at full load (N, N, N mm); `None` for the loads of the problem.
-    pub loads: Option<Vec<[f64; 3]>>,
+    pub loads: Option<Vec<Motion>>,
     /// Thickness over the thickness of the problem.
     pub thickness: f64,
     /// All stresses at equal strain over the stresses of the problem.
@@ -60,7 +60,7 @@ pub struct Response {
     pub deployment: Deployment,
     /// Forces (F_x, F_y, M) by which the supports hold every panel (N, N, N mm), about the point
     /// where it is held; zero where it is free.
-    pub reactions: Vec<[f64; 3]>,
+    pub reactions: Vec<Motion>,
 }
 
 impl Response {
@@ -81,7 +81,7 @@ pub struct ResponseCotangent {
     /// Gradient in the deployed corners of every panel.
     pub corners: Vec<[[f64; 2]; 4]>,
     /// Gradient in the reactions.
-    pub reactions: Vec<[f64; 3]>,
+    pub reactions: Vec<Motion>,
     /// Gradient in the load factor.
     pub load_factor: f64,
 }
@@ -94,7 +94,7 @@ pub struct ResponseGradient {
     /// Gradient in (F_x, F_y, M) on every panel at full load; zero at the supports, where no load
     /// is possible, and under a prescribed stroke in the forces on panels without a force: the sum
     /// of all magnitudes, which the stroke refers to, has a kink there.
-    pub loads: Vec<[f64; 3]>,
+    pub loads: Vec<Motion>,
     /// Gradient in the logarithm of the thickness; `None` if the hinge law does not determine it.
     pub thickness: Option<f64>,
     /// Gradient in the logarithm of all stresses at equal strain; `None` if the hinge law does not
@@ -153,7 +153,7 @@ impl DesignProblem {
     pub fn response_at(
         &self,
         design: &DesignVector,
-        configuration: &[[f64; 3]],
+        configuration: &[Motion],
     ) -> Result<Response, DesignError> {
         self.responded(design, |solver, hinged| {
             (vec![solver.full_load(hinged, configuration.to_vec())], false)
@@ -214,16 +214,15 @@ impl DesignProblem {
         let energies = law.energies(&state.deformations, Order::Design);
         // Minus the virtual work of forces of the hinges.
         let work = |forces: &dyn Fn(usize) -> [f64; 3]| -> f64 {
-            let hinges = std::iter::zip(&sheet.hinges, &motions).enumerate();
+            let hinges = zip(&sheet.hinges, &motions).enumerate();
             let works = hinges.map(|(h, (hinge, motion))| {
                 dot(&forces(h), &motion.rates(at_hinge(hinge, virtual_motion)))
             });
             -works.sum::<f64>()
         };
         let weight = weights_of_panels(sheet, mechanics.solver.weight, &state.configuration);
-        let of_weight: f64 = std::iter::zip(weight, virtual_motion)
-            .map(|(weight, motion)| dot(&weight.force, motion))
-            .sum();
+        let of_weight: f64 =
+            zip(weight, virtual_motion).map(|(weight, motion)| dot(&weight.force, motion)).sum();
         let thickness =
             |h: usize| by_thickness(&energies[h], &state.deformations[h], designs[h].w_lig);
         let [of_thickness, of_stress] = mechanics.law.scales();

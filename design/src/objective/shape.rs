@@ -13,12 +13,13 @@ use crate::{
     pattern::fit_variables::FitVariables,
 };
 use faer::c64;
+use support::Point;
 
 /// The distance of the deployed outline to a target.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Shape {
     /// T (mm); not empty.
-    pub target: Vec<[f64; 2]>,
+    pub target: Vec<Point>,
     /// w_cov of the distance (dimensionless).
     pub coverage_weight: f64,
     /// Whether the centroid of the area inside P is translated to the origin, where the centroid of
@@ -45,19 +46,19 @@ impl Term for Shape {
 
 impl Shape {
     /// The distance to the points `target` (mm) with the coverage weight 1/2 of the paper.
-    pub fn new(target: Vec<[f64; 2]>) -> Self {
+    pub fn new(target: Vec<Point>) -> Self {
         Self { target, coverage_weight: 0.5, centred: false }
     }
 
     /// The points P in the position in which they are compared with the target (mm): centred, and
     /// in the size and the rotation of a target that is fitted to them.
-    pub fn placed(&self, outline: &[[f64; 2]], fit: Option<FitVariables>) -> Vec<[f64; 2]> {
+    pub fn placed(&self, outline: &[Point], fit: Option<FitVariables>) -> Vec<Point> {
         let [x, y] = match self.centred {
             true => centre::of(outline),
             false => [0.0; 2],
         };
         let turn = turn(fit);
-        let place = |[px, py]: &[f64; 2]| point(turn * c64::new(px - x, py - y));
+        let place = |[px, py]: &Point| point(turn * c64::new(px - x, py - y));
         outline.iter().map(place).collect()
     }
 
@@ -66,8 +67,8 @@ impl Shape {
     pub(crate) fn pullback(
         &self,
         at: &Deployed,
-        placed: &[[f64; 2]],
-        by_placed: &[[f64; 2]],
+        placed: &[Point],
+        by_placed: &[Point],
         weight: f64,
         gradient: &mut TermGradient,
     ) {
@@ -87,7 +88,7 @@ impl Shape {
     }
 
     /// The Chamfer distance of placed points to the target (mm^2), and its gradient in them.
-    pub fn distance(&self, placed: &[[f64; 2]]) -> (f64, Vec<[f64; 2]>) {
+    pub fn distance(&self, placed: &[Point]) -> (f64, Vec<Point>) {
         chamfer(placed, &self.target, self.coverage_weight)
     }
 }

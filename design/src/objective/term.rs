@@ -7,8 +7,10 @@ use crate::{
     pattern::fit_variables::FitVariables,
     sheet::cut_sheet::{Sheet, SheetGradient},
 };
+use faer::c64;
+use std::iter::zip;
 use std::{fmt::Debug, sync::Arc};
-use support::vectors;
+use support::{Point, vectors};
 
 /// A term of the objective.
 pub trait Term: Debug + Send + Sync {
@@ -59,7 +61,7 @@ pub struct Deployed<'a> {
     /// The load steps, without the flat state.
     pub path: &'a [LoadStep],
     /// The deployed positions of the outline points P (mm).
-    pub outline: &'a [[f64; 2]],
+    pub outline: &'a [Point],
     /// How the sheet is fitted to its target.
     pub fit: Option<FitVariables>,
 }
@@ -68,7 +70,7 @@ pub struct Deployed<'a> {
 #[derive(Clone, Debug, PartialEq)]
 pub struct TermGradient {
     /// Gradient in the deployed positions of P.
-    pub by_outline: Vec<[f64; 2]>,
+    pub by_outline: Vec<Point>,
     /// Gradient in the measures of each hinge at each load step, for the sum over hinges instead of
     /// their mean.
     pub by_measures: Vec<Vec<MeasureGradient>>,
@@ -87,15 +89,14 @@ pub(crate) fn over_panels(
     weight: f64,
     scale: f64,
     gradient: &mut TermGradient,
-    function: impl Fn(&[[f64; 2]; 4], &mut f64, &mut [[f64; 2]; 4]),
+    function: impl Fn(&[Point; 4], &mut f64, &mut [c64; 4]),
 ) -> f64 {
     let mut value = 0.0;
-    for (panel, sums) in std::iter::zip(&at.sheet.panels, &mut gradient.by_sheet.corners) {
-        let mut by_corners = [[0.0; 2]; 4];
+    for (panel, sums) in zip(&at.sheet.panels, &mut gradient.by_sheet.corners) {
+        let mut by_corners = [c64::ZERO; 4];
         function(&panel.corners, &mut value, &mut by_corners);
-        let entries = by_corners.as_flattened().iter();
-        for (sum, entry) in std::iter::zip(sums.as_flattened_mut(), entries) {
-            *sum += weight * (scale * entry);
+        for (sum, by_corner) in zip(sums, by_corners) {
+            *sum += weight * (scale * by_corner);
         }
     }
     scale * value
@@ -128,7 +129,7 @@ impl TermGradient {
     }
 
     /// Adds `weight` times a gradient in the deployed positions of P.
-    pub fn add_by_outline(&mut self, weight: f64, by_outline: &[[f64; 2]]) {
+    pub fn add_by_outline(&mut self, weight: f64, by_outline: &[Point]) {
         let sums = self.by_outline.as_flattened_mut();
         vectors::add(sums, by_outline.as_flattened(), weight);
     }
@@ -157,5 +158,7 @@ pub(crate) fn on_panels(term: &dyn Term, panels: &[[[f64; 2]; 4]]) -> (f64, Vec<
     }
     let at = Deployed { sheet: &sheet, path: &[], outline: &[], fit: None };
     let mut gradient = TermGradient::zeros(&at);
-    (term.evaluate(&at, 1.0, &mut gradient), gradient.by_sheet.corners)
+    let value = term.evaluate(&at, 1.0, &mut gradient);
+    let by_corners = gradient.by_sheet.corners.into_iter();
+    (value, by_corners.map(|corners| corners.map(crate::geometry::plane::point)).collect())
 }

@@ -263,7 +263,8 @@ mod tests {
             let states = steps.iter().flat_map(|step| step.state);
             [width, angle + by_angle].into_iter().chain(states)
         });
-        let by_corners = gradient.by_sheet.corners.into_flattened().into_flattened();
+        let by_corners = gradient.by_sheet.corners.into_flattened();
+        let by_corners = by_corners.into_iter().flat_map(|slope| [slope.re, slope.im]);
         let by_outline = gradient.by_outline.into_flattened();
         let slopes = by_hinges.chain(by_corners).chain(by_outline).collect();
         (value, slopes)

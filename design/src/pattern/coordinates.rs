@@ -6,7 +6,8 @@
 
 use crate::pattern::grid::Grid;
 use serde::{Deserialize, Serialize};
-use support::fault::Fault;
+use std::iter::zip;
+use support::{Fault, fault, refuse};
 
 /// Unconstrained coordinates of a pattern (5), or a gradient in them.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -82,15 +83,11 @@ impl PatternCoordinates {
         for (name, values, expected) in blocks {
             if values.len() != expected {
                 let (found, Grid { m, n }) = (values.len(), grid);
-                let what = format!(
-                    "{name} has {found} entries; a sheet of {m} x {n} panels needs {expected}"
-                );
-                return Err(Fault::from(what));
+                refuse!("{name} has {found} entries; a sheet of {m} x {n} panels needs {expected}");
             }
             if let Some(index) = values.iter().position(|value| !value.is_finite()) {
                 let value = values[index];
-                let what = format!("{name}[{index}] = {value} is not a finite number");
-                return Err(Fault::from(what));
+                refuse!("{name}[{index}] = {value} is not a finite number");
             }
         }
         Ok(())
@@ -99,7 +96,7 @@ impl PatternCoordinates {
 
 fn outside_interval(name: &str, index: usize, value: f64) -> Fault {
     let range = format!("0 < {name} < 1, increasing along each edge");
-    Fault::from(format!("{name}[{index}] = {value} violates {range}"))
+    fault!("{name}[{index}] = {value} violates {range}")
 }
 
 /// The logistic function sigma of (5).
@@ -145,6 +142,6 @@ pub fn partial_sums_pullback(tau: &[f64], gradient: &[f64]) -> Vec<f64> {
     for s in (0..gradient.len()).rev() {
         by_weight[s] = by_weight[s + 1] + gradient[s];
     }
-    let mean: f64 = std::iter::zip(&weights, &by_weight).map(|(w, g)| w * g).sum();
-    std::iter::zip(&weights, &by_weight).map(|(w, g)| w * (g - mean)).collect()
+    let mean: f64 = zip(&weights, &by_weight).map(|(w, g)| w * g).sum();
+    zip(&weights, &by_weight).map(|(w, g)| w * (g - mean)).collect()
 }

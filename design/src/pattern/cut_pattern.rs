@@ -11,7 +11,7 @@
 
 use crate::{
     geometry::{
-        plane::{add, complex, cross, dot},
+        plane::{complex, cross, dot, point},
         polygon::bounds,
     },
     pattern::{
@@ -27,14 +27,15 @@ use faer::{
     sparse::{SparseColMat, Triplet, linalg::solvers::Lu},
 };
 use serde::{Deserialize, Serialize};
-use support::fault::{Fault, fault};
+use std::iter::zip;
+use support::{Fault, Point, fault, refuse};
 
 /// The fixed outline of the flat sheet: corners SW, SE, NE, NW (mm).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Outline {
     /// Corners SW, SE, NE, NW (mm).
-    pub corners: [[f64; 2]; 4],
+    pub corners: [Point; 4],
 }
 
 impl Outline {
@@ -62,14 +63,14 @@ impl Outline {
             let turn = cross(corner(k + 1) - corner(k), corner(k + 2) - corner(k + 1));
             turn > 0.0 && turn.is_finite()
         });
-        let what = || {
-            format!(
-                "the outline {:?} is not a convex quadrilateral with its corners \
-                 counter-clockwise from the south-west",
-                self.corners
-            )
-        };
-        convex.then_some(()).ok_or_else(|| Fault::from(what()))
+        if convex {
+            return Ok(());
+        }
+        Err(fault!(
+            "the outline {:?} is not a convex quadrilateral with its corners counter-clockwise from the \
+     south-west",
+            self.corners
+        ))
     }
 }
 
@@ -85,7 +86,7 @@ pub struct CutPattern {
     /// Boundary positions on the edges bottom, right, top, left, as fractions of the edge.
     pub tau: [Vec<f64>; 4],
     /// Cut endpoints (mm), row by row: x_ij, then x'_ij of each vertex.
-    pub points: Vec<[f64; 2]>,
+    pub points: Vec<Point>,
     /// Factors of the collinearity system, stored for the pullback.
     system: Lu<usize, f64>,
 }
@@ -99,8 +100,7 @@ impl CutPattern {
     ) -> Result<Self, Fault> {
         let Grid { m, n } = grid;
         if m < 2 || n < 2 {
-            let what = format!("a sheet of {m} x {n} panels has no interior cut");
-            return Err(fault("", what, "use at least 2 x 2"));
+            refuse!("a sheet of {m} x {n} panels has no interior cut: use at least 2 x 2");
         }
         outline.check()?;
         coordinates.check(grid)?;
@@ -123,7 +123,7 @@ impl CutPattern {
         .sp_lu()
         .map_err(|_| singular())?;
         let solution = system.solve(outline_points(grid, &outline, &tau));
-        let points: Vec<[f64; 2]> =
+        let points: Vec<Point> =
             (0..grid.point_count()).map(|row| [solution[(row, 0)], solution[(row, 1)]]).collect();
         if points.iter().flatten().any(|value| !value.is_finite()) {
             return Err(singular());
@@ -132,18 +132,18 @@ impl CutPattern {
     }
 
     /// x_ij (mm).
-    pub fn x(&self, i: usize, j: usize) -> [f64; 2] {
+    pub fn x(&self, i: usize, j: usize) -> Point {
         self.points[self.grid.endpoint(i, j, Endpoint::X)]
     }
 
     /// x'_ij (mm).
-    pub fn x_prime(&self, i: usize, j: usize) -> [f64; 2] {
+    pub fn x_prime(&self, i: usize, j: usize) -> Point {
         self.points[self.grid.endpoint(i, j, Endpoint::XPrime)]
     }
 
     /// The sides r L and (1 - r) L of the void of every interior cut (mm), row by row.
-    pub fn void_sides(&self) -> Vec<[f64; 2]> {
-        let cuts = std::iter::zip(self.grid.interior_vertices(), &self.r);
+    pub fn void_sides(&self) -> Vec<Point> {
+        let cuts = zip(self.grid.interior_vertices(), &self.r);
         cuts.map(|((i, j), r)| {
             let [a, b] = self.grid.facing_endpoints(i, j);
             let length = (complex(self.points[a]) - complex(self.points[b])).norm();
@@ -154,13 +154,13 @@ impl CutPattern {
 
     /// The gradient in (z, ell) and in the outline's corners of a function with the given gradient
     /// in [`points`](Self::points).
-    pub fn pullback(&self, points: &[[f64; 2]]) -> (PatternCoordinates, [[f64; 2]; 4]) {
+    pub fn pullback(&self, points: &[c64]) -> (PatternCoordinates, [Point; 4]) {
         let adjoint = self
             .system
-            .solve_transpose(Mat::from_fn(points.len(), 2, |row, axis| points[row][axis]));
+            .solve_transpose(Mat::from_fn(points.len(), 2, |row, axis| point(points[row])[axis]));
         let adjoint = |point: usize| complex([adjoint[(point, 0)], adjoint[(point, 1)]]);
 
-        let z = std::iter::zip(self.grid.interior_vertices(), &self.r)
+        let z = zip(self.grid.interior_vertices(), &self.r)
             .map(|((i, j), r)| {
                 let [a, b] = self.grid.facing_endpoints(i, j);
                 let slit = complex(self.points[a]) - complex(self.points[b]);
@@ -184,42 +184,41 @@ impl CutPattern {
     }
 
     /// The gradient in the outline's corners, from the adjoint of the cut endpoints.
-    fn outline_pullback(&self, adjoint: impl Fn(usize) -> c64) -> [[f64; 2]; 4] {
-        let mut corners = [[0.0; 2]; 4];
+    fn outline_pullback(&self, adjoint: impl Fn(usize) -> c64) -> [Point; 4] {
+        let mut corners = [c64::ZERO; 4];
         for (edge, tau) in self.tau.iter().enumerate() {
             let [start, end] = EDGES[edge];
-            for (s, tau) in std::iter::zip(1.., tau) {
+            for (s, tau) in zip(1.., tau) {
                 let (i, j) = self.grid.edge_vertex(edge, s);
                 let [x, x_prime] = self.grid.endpoints(i, j).map(&adjoint);
                 let force = x + x_prime;
-                add(&mut corners[start], force * (1.0 - tau));
-                add(&mut corners[end], force * *tau);
+                corners[start] += force * (1.0 - tau);
+                corners[end] += force * *tau;
             }
         }
         let Grid { m, n } = self.grid;
-        for (corner, (i, j)) in std::iter::zip(&mut corners, [(0, 0), (m, 0), (m, n), (0, n)]) {
-            self.grid.endpoints(i, j).into_iter().for_each(|point| add(corner, adjoint(point)));
+        for (corner, (i, j)) in zip(&mut corners, [(0, 0), (m, 0), (m, n), (0, n)]) {
+            self.grid.endpoints(i, j).into_iter().for_each(|point| *corner += adjoint(point));
         }
-        corners
+        corners.map(point)
     }
 }
 
 fn colliding(name: &str, index: usize) -> Fault {
-    let what = format!(
+    fault!(
         "{name}[{index}] is so far from 0 that its chart (5) rounds to a bound: two cuts collide"
-    );
-    Fault::from(what)
+    )
 }
 
 fn singular() -> Fault {
-    Fault::from("the collinearity system of the pattern is singular")
+    fault!("the collinearity system of the pattern is singular")
 }
 
 /// The matrix of (3)-(4): one row per cut endpoint.
 fn collinearity(grid: Grid, r: &[f64]) -> Vec<Triplet<usize, usize, f64>> {
     let mut entries: Vec<_> =
         (0..grid.point_count()).map(|point| Triplet::new(point, point, 1.0)).collect();
-    for ((i, j), &r) in std::iter::zip(grid.interior_vertices(), r) {
+    for ((i, j), &r) in zip(grid.interior_vertices(), r) {
         let [a, b] = grid.facing_endpoints(i, j);
         let [x, x_prime] = grid.endpoints(i, j);
         entries.extend([

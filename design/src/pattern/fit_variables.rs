@@ -10,6 +10,8 @@
 
 use crate::pattern::{coordinates::logistic, cut_pattern::Outline};
 use serde::{Deserialize, Serialize};
+use std::array::from_fn;
+use support::Point;
 
 /// The variables of a fit, or a gradient in them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -20,7 +22,7 @@ pub struct FitVariables {
     /// Rotation of the target about its centre, counter-clockwise (rad).
     pub rotation: f64,
     /// u of the corners SW, SE, NE, NW.
-    pub corners: [[f64; 2]; 4],
+    pub corners: [Point; 4],
 }
 
 impl FitVariables {
@@ -34,7 +36,7 @@ impl FitVariables {
     pub fn outline(&self, stock: &Outline) -> Outline {
         let middle = middle(stock);
         Outline {
-            corners: std::array::from_fn(|i| {
+            corners: from_fn(|i| {
                 let along = |c: usize| stock.corners[i][c] - middle[c];
                 [0, 1].map(|c| middle[c] + logistic(self.corners[i][c]) * along(c))
             }),
@@ -47,18 +49,18 @@ impl FitVariables {
         &self,
         stock: &Outline,
         [ln_size, rotation]: [f64; 2],
-        by_outline: &[[f64; 2]; 4],
+        by_outline: &[Point; 4],
     ) -> Self {
         let middle = middle(stock);
         let by_u = |i: usize, c: usize| {
             let fraction = logistic(self.corners[i][c]);
             by_outline[i][c] * fraction * (1.0 - fraction) * (stock.corners[i][c] - middle[c])
         };
-        Self { ln_size, rotation, corners: std::array::from_fn(|i| [by_u(i, 0), by_u(i, 1)]) }
+        Self { ln_size, rotation, corners: from_fn(|i| [by_u(i, 0), by_u(i, 1)]) }
     }
 }
 
-fn middle(stock: &Outline) -> [f64; 2] {
+fn middle(stock: &Outline) -> Point {
     let [sw, _, ne, _] = stock.corners;
     [0, 1].map(|c| 0.5 * (sw[c] + ne[c]))
 }

@@ -2,7 +2,7 @@
 
 use crate::{
     geometry::{
-        plane::{I, add, complex, dot, point},
+        plane::{I, complex, dot, point},
         polygon::{distance, edges, nearest_on_segment},
     },
     sheet::cut_sheet::{AttachmentPoint, PanelPoint, Sheet, SheetGradient},
@@ -117,18 +117,18 @@ impl AttachmentPoint {
         let mut by_corners = [c64::ZERO; 4];
         match obstacle {
             Obstacle::Edge([p, q]) => {
-                by_corners = panel.pullback(self.point, point(away));
+                by_corners = panel.pullback(self.point, away);
                 let [start, end] = [p, q].map(|corner| complex(panel.corners[corner]));
                 let along = dot(to - start, end - start) / (end - start).norm_sqr();
                 by_corners[p] -= away * (1.0 - along);
                 by_corners[q] -= away * along;
             }
             Obstacle::HoleToHinge(h) => {
-                by_corners = panel.pullback(self.point, point(away));
-                add(&mut gradient.tips[h], -away);
+                by_corners = panel.pullback(self.point, away);
+                gradient.tips[h] -= away;
             }
             Obstacle::ClipToHinge(h) => {
-                add(&mut gradient.tips[h], -away);
+                gradient.tips[h] -= away;
                 if let PanelPoint::Middle([p, q]) = self.point {
                     // A point at a constant length from the middle of the edge, along its
                     // direction.
@@ -147,7 +147,7 @@ impl AttachmentPoint {
             }
         }
         for (sum, by_corner) in std::iter::zip(&mut gradient.corners[self.panel], by_corners) {
-            add(sum, by_corner);
+            *sum += by_corner;
         }
     }
 }

@@ -13,7 +13,7 @@
 pub use crate::sheet::panel::{Panel, PanelPoint};
 use crate::{
     geometry::{
-        plane::{I, add, complex, cross, dot, point},
+        plane::{I, complex, cross, dot, point},
         region::{Contour, Region},
     },
     pattern::{
@@ -29,8 +29,9 @@ use faer::c64;
 use hinge::HingeDesign;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::iter::zip;
 use std::sync::Arc;
-use support::fault::{Fault, fault};
+use support::{Fault, Point, refuse};
 
 /// The point at which the hinge deformation (8) is measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -72,15 +73,15 @@ pub struct Hinge {
     /// The two panels and the cuts that bound the hinge.
     pub site: HingeSite,
     /// The ideal corner C, shared by the two panels (mm).
-    pub corner: [f64; 2],
+    pub corner: Point,
     /// The tip O of the main cut (mm).
-    pub tip: [f64; 2],
+    pub tip: Point,
     /// The point at which (8) is measured: `corner` or `tip` (mm).
-    pub attachment: [f64; 2],
+    pub attachment: Point,
     /// Unit vector along the secondary cut.
-    pub e_sec: [f64; 2],
+    pub e_sec: Point,
     /// Unit vector from the corner along the main cut.
-    pub main: [f64; 2],
+    pub main: Point,
     /// Material between O and the finished edge of the secondary cut (mm).
     pub w_lig: f64,
     /// Distance of O from the line of the secondary cut (mm): w_lig plus half of the slit, or
@@ -106,7 +107,7 @@ pub struct Sheet {
     /// Ordered by vertex, row by row; at each vertex x before x'.
     pub hinges: Vec<Hinge>,
     /// Cut endpoints of the pattern.
-    points: Vec<[f64; 2]>,
+    points: Vec<Point>,
 }
 
 /// The gradient of a function of the sheet with respect to all quantities of the sheet.
@@ -114,17 +115,17 @@ pub struct Sheet {
 pub struct SheetGradient {
     /// Gradient in the corners SW, SE, NE, NW of every panel, at fixed reference, centroid and
     /// area.
-    pub corners: Vec<[[f64; 2]; 4]>,
+    pub corners: Vec<[c64; 4]>,
     /// Gradient in the reference point of every panel.
-    pub references: Vec<[f64; 2]>,
+    pub references: Vec<c64>,
     /// Gradient in the centroid of every panel, at a fixed reference point.
-    pub centroids: Vec<[f64; 2]>,
+    pub centroids: Vec<c64>,
     /// Gradient in the area of every panel.
     pub areas: Vec<f64>,
     /// Gradient in the attachment point of every hinge.
-    pub attachments: Vec<[f64; 2]>,
+    pub attachments: Vec<c64>,
     /// Gradient in the tip of the main cut of every hinge, at a fixed attachment point.
-    pub tips: Vec<[f64; 2]>,
+    pub tips: Vec<c64>,
     /// Gradient in the angle of e_sec, per hinge.
     pub frame_angles: Vec<f64>,
     /// Gradient in alpha, per hinge.
@@ -141,12 +142,12 @@ impl SheetGradient {
     pub fn zeros(topology: &Topology) -> Self {
         let (panels, hinges) = (topology.panel_count(), topology.hinge_count());
         Self {
-            corners: vec![[[0.0; 2]; 4]; panels],
-            references: vec![[0.0; 2]; panels],
-            centroids: vec![[0.0; 2]; panels],
+            corners: vec![[c64::ZERO; 4]; panels],
+            references: vec![c64::ZERO; panels],
+            centroids: vec![c64::ZERO; panels],
             areas: vec![0.0; panels],
-            attachments: vec![[0.0; 2]; hinges],
-            tips: vec![[0.0; 2]; hinges],
+            attachments: vec![c64::ZERO; hinges],
+            tips: vec![c64::ZERO; hinges],
             frame_angles: vec![0.0; hinges],
             alphas: vec![0.0; hinges],
             widths: vec![0.0; hinges],
@@ -170,17 +171,16 @@ impl Sheet {
     ) -> Result<Self, Fault> {
         if w_lig.len() != topology.hinge_count() {
             let (found, expected) = (w_lig.len(), topology.hinge_count());
-            let what = format!("{found} ligament widths for {expected} hinges");
-            return Err(Fault::from(what));
+            refuse!("{found} ligament widths for {expected} hinges");
         }
-        let shapes = std::iter::zip(&topology.endpoints, &topology.trims);
-        let panels = std::iter::zip(0.., shapes)
+        let shapes = zip(&topology.endpoints, &topology.trims);
+        let panels = zip(0.., shapes)
             .map(|(k, (endpoints, trim))| {
                 let corners = endpoints.map(|endpoint| pattern.points[endpoint]);
                 Panel::new(k, corners, trim.clone())
             })
             .collect::<Result<_, _>>()?;
-        let hinges = std::iter::zip(&topology.sites, w_lig)
+        let hinges = zip(&topology.sites, w_lig)
             .enumerate()
             .map(|(h, (site, &w_lig))| {
                 let slit = topology.has_far_flank(site);
@@ -271,27 +271,26 @@ impl Sheet {
     }
 
     /// Gradients in the pattern's cut endpoints and in w_lig, from a gradient in the sheet.
-    pub fn pullback(&self, gradient: &SheetGradient) -> (Vec<[f64; 2]>, Vec<f64>) {
-        let mut points = vec![[0.0; 2]; self.points.len()];
+    pub fn pullback(&self, gradient: &SheetGradient) -> (Vec<c64>, Vec<f64>) {
+        let mut points = vec![c64::ZERO; self.points.len()];
         for (k, panel) in self.panels.iter().enumerate() {
             let by_parts = [
-                gradient.corners[k].map(complex),
+                gradient.corners[k],
                 panel.pullback(panel.point, gradient.references[k]),
                 panel.pullback(PanelPoint::Centroid, gradient.centroids[k]),
                 panel.area_pullback(gradient.areas[k]),
             ];
             for (corner, &endpoint) in self.topology.endpoints[k].iter().enumerate() {
                 let by_corner = by_parts.iter().map(|by_corners| by_corners[corner]);
-                add(&mut points[endpoint], by_corner.sum::<c64>());
+                points[endpoint] += by_corner.sum::<c64>();
             }
         }
         let mut widths = gradient.widths.clone();
         for (h, hinge) in self.hinges.iter().enumerate() {
             let radius_by_width = self.options.process.radius_by_width();
             widths[h] += gradient.holes[h] * (radius_by_width - hinge.fillet_ratio) / hinge.w_lig;
-            let (attachment, mut by_tip) =
-                (complex(gradient.attachments[h]), complex(gradient.tips[h]));
-            add(&mut points[hinge.site.corner], attachment + by_tip);
+            let (attachment, mut by_tip) = (gradient.attachments[h], gradient.tips[h]);
+            points[hinge.site.corner] += attachment + by_tip;
             if self.options.hinge_point == HingePoint::CutTip {
                 by_tip += attachment;
             }
@@ -311,11 +310,11 @@ impl Sheet {
     }
 
     /// Adds the gradient of `weight` times the angle of the segment between two cut endpoints.
-    fn angle_pullback(&self, points: &mut [[f64; 2]], [from, to]: [usize; 2], weight: f64) {
+    fn angle_pullback(&self, points: &mut [c64], [from, to]: [usize; 2], weight: f64) {
         let segment = complex(self.points[to]) - complex(self.points[from]);
         let gradient = I * segment * (weight / segment.norm_sqr());
-        add(&mut points[to], gradient);
-        add(&mut points[from], -gradient);
+        points[to] += gradient;
+        points[from] -= gradient;
     }
 }
 
@@ -323,13 +322,12 @@ impl Hinge {
     fn new(
         hinge: usize,
         site: HingeSite,
-        points: &[[f64; 2]],
+        points: &[Point],
         [w_lig, set_back]: [f64; 2],
         options: SheetOptions,
     ) -> Result<Self, Fault> {
         if !(w_lig > 0.0 && w_lig.is_finite()) {
-            let what = format!("w_lig[{hinge}] = {w_lig} mm is not a positive finite number");
-            return Err(Fault::from(what));
+            refuse!("w_lig[{hinge}] = {w_lig} mm is not a positive finite number");
         }
         let unit = |from: usize, to: usize| {
             let segment = complex(points[to]) - complex(points[from]);
@@ -340,9 +338,10 @@ impl Hinge {
         // m rotated by alpha is e_sec.
         let alpha = cross(main, e_sec).atan2(dot(main, e_sec));
         if !(alpha > 0.0 && alpha < std::f64::consts::PI) {
-            let alpha_deg = alpha.to_degrees();
-            let what = format!("hinge {hinge} has the cut angle {alpha_deg} deg, outside (0, 180)");
-            return Err(fault("", what, "its cuts have collapsed"));
+            refuse!(
+                "hinge {hinge} has the cut angle {} deg, outside (0, 180): its cuts have collapsed",
+                alpha.to_degrees()
+            );
         }
         let corner = points[site.corner];
         let hinge = Self {

@@ -10,15 +10,16 @@ use crate::{
     sheet::cut_sheet::{Hinge, Panel, Sheet},
 };
 use std::f64::consts::PI;
+use support::Point;
 
 /// The window of a hinge in the flat sheet.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Window {
     /// Foot of the perpendicular from O to the edge of the secondary cut: the origin of the hinge
     /// frame (mm).
-    pub foot: [f64; 2],
+    pub foot: Point,
     /// Unit vector along the secondary cut.
-    pub e_sec: [f64; 2],
+    pub e_sec: Point,
     /// Radius r_win (mm).
     pub radius: f64,
 }
@@ -45,13 +46,13 @@ impl Window {
     }
 
     /// The point at hinge-frame coordinates (x, y) (mm).
-    pub fn point(&self, x: f64, y: f64) -> [f64; 2] {
+    pub fn point(&self, x: f64, y: f64) -> Point {
         let [c, s] = self.e_sec;
         [self.foot[0] + c * x - s * y, self.foot[1] + s * x + c * y]
     }
 
     /// The half-disc as a convex polygon, from -x through the material to +x (mm).
-    pub fn polygon(&self) -> Vec<[f64; 2]> {
+    pub fn polygon(&self) -> Vec<Point> {
         (0..=ARC)
             .map(|i| {
                 let (sin, cos) = (PI * i as f64 / ARC as f64).sin_cos();
@@ -67,7 +68,7 @@ impl Window {
     }
 
     /// Signed distance of a point above the flat side, on the side without material (mm).
-    fn height(&self, [x, y]: [f64; 2]) -> f64 {
+    fn height(&self, [x, y]: Point) -> f64 {
         let [c, s] = self.e_sec;
         c * (y - self.foot[1]) - s * (x - self.foot[0])
     }

@@ -11,19 +11,21 @@
 //! through the sheet. Pitches follow (6).
 
 use crate::{
-    geometry::plane::{I, add, complex, dot, point, turn},
+    geometry::plane::{I, complex, dot, point, turn},
     sheet::{
         cut_sheet::{Sheet, SheetGradient},
         kinematics::Configuration,
     },
 };
 use faer::c64;
-use support::fault::Fault;
+use support::{Fault, fault};
 
 /// An error unless the opening angle (rad) is finite.
 pub fn check_opening(theta: f64) -> Result<(), Fault> {
-    let what = || format!("the opening angle {theta} rad is not a finite number");
-    theta.is_finite().then_some(()).ok_or_else(|| Fault::from(what()))
+    if theta.is_finite() {
+        return Ok(());
+    }
+    Err(fault!("the opening angle {theta} rad is not a finite number"))
 }
 
 /// The configuration with every hinge open by `theta` (rad).
@@ -78,8 +80,8 @@ pub fn ideal_deployment_pullback(
             let spin = turn(rotation(sheet, panel, theta));
             let arm = complex(sheet.panels[panel].reference) - corner;
             let by_arm = sign * (1.0 - spin).conj() * force;
-            add(&mut by_sheet.references[panel], by_arm);
-            add(&mut by_sheet.corners[corner_panel][corner_index], -by_arm);
+            by_sheet.references[panel] += by_arm;
+            by_sheet.corners[corner_panel][corner_index] -= by_arm;
             by_rotation[panel] -= sign * dot(force, I * spin * arm);
         }
     }

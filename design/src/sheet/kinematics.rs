@@ -18,50 +18,55 @@ use crate::{
         plane::{I, complex, cross, dot, point, turn, turn_less_one},
         polygon::distance,
     },
-    sheet::cut_sheet::{Panel, Sheet},
+    sheet::cut_sheet::{Hinge, Panel, Sheet},
 };
 use faer::c64;
 use hinge::HingeDeformation;
+use std::iter::zip;
+use support::{Point, vectors};
 
-/// A rigid motion (u_x, u_y, phi) of every panel relative to the flat sheet (mm, mm, rad).
-pub type Configuration = Vec<[f64; 3]>;
+/// A rigid motion (u_x, u_y, phi) of a panel (mm, mm, rad), or forces and a moment on it.
+pub type Motion = [f64; 3];
+
+/// The motion of every panel relative to the flat sheet.
+pub type Configuration = Vec<Motion>;
 
 /// The deployed position of a point of a panel with the motion `motion`.
-pub fn deployed(panel: &Panel, motion: [f64; 3], flat: [f64; 2]) -> [f64; 2] {
+pub fn deployed(panel: &Panel, motion: Motion, flat: Point) -> Point {
     let [u_x, u_y, phi] = motion;
     let reference = complex(panel.reference);
     point(c64::new(u_x, u_y) + reference + turn(phi) * (complex(flat) - reference))
 }
 
 /// The deployed corners SW, SE, NE, NW of every panel (mm).
-pub fn deployed_corners(sheet: &Sheet, configuration: &[[f64; 3]]) -> Vec<[[f64; 2]; 4]> {
-    std::iter::zip(&sheet.panels, configuration)
+pub fn deployed_corners(sheet: &Sheet, configuration: &[Motion]) -> Vec<[Point; 4]> {
+    zip(&sheet.panels, configuration)
         .map(|(panel, &motion)| panel.corners.map(|corner| deployed(panel, motion, corner)))
         .collect()
 }
 
 /// The deployed boundary of every panel (mm).
-pub fn deployed_boundaries(sheet: &Sheet, configuration: &[[f64; 3]]) -> Vec<Vec<[f64; 2]>> {
-    let moved = |(panel, motion): (&Panel, &[f64; 3])| {
+pub fn deployed_boundaries(sheet: &Sheet, configuration: &[Motion]) -> Vec<Vec<Point>> {
+    let moved = |(panel, motion): (&Panel, &Motion)| {
         panel.boundary.iter().map(|point| deployed(panel, *motion, *point)).collect()
     };
-    std::iter::zip(&sheet.panels, configuration).map(moved).collect()
+    zip(&sheet.panels, configuration).map(moved).collect()
 }
 
 /// Distance of every panel corner between two configurations (mm).
-pub fn corner_distances(sheet: &Sheet, from: &[[f64; 3]], to: &[[f64; 3]]) -> Vec<f64> {
+pub fn corner_distances(sheet: &Sheet, from: &[Motion], to: &[Motion]) -> Vec<f64> {
     let [from, to] = [from, to].map(|configuration| deployed_corners(sheet, configuration));
-    std::iter::zip(from.as_flattened(), to.as_flattened()).map(|(p, q)| distance(*p, *q)).collect()
+    zip(from.as_flattened(), to.as_flattened()).map(|(p, q)| distance(*p, *q)).collect()
 }
 
 /// The gradient in (motion, flat point, reference point) of a function with the given gradient in
 /// the deployed position of the point.
 pub fn deployed_pullback(
     panel: &Panel,
-    motion: [f64; 3],
-    flat: [f64; 2],
-    gradient: [f64; 2],
-) -> ([f64; 3], c64, c64) {
+    motion: Motion,
+    flat: Point,
+    gradient: Point,
+) -> (Motion, c64, c64) {
     let force = complex(gradient);
     let spin = turn(motion[2]);
     let arm = spin * (complex(flat) - complex(panel.reference));
@@ -70,7 +75,7 @@ pub fn deployed_pullback(
 }
 
 /// The deformation (8) of every hinge.
-pub fn hinge_deformations(sheet: &Sheet, configuration: &[[f64; 3]]) -> Vec<HingeDeformation> {
+pub fn hinge_deformations(sheet: &Sheet, configuration: &[Motion]) -> Vec<HingeDeformation> {
     let motions = HingeMotion::all(sheet, configuration);
     motions.iter().map(HingeMotion::deformation).collect()
 }
@@ -103,24 +108,24 @@ pub struct HingeMotion {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct HingeGeometryGradient {
     /// Gradient in the attachment point.
-    pub attachment: [f64; 2],
+    pub attachment: c64,
     /// Gradient in the reference point of panel A.
-    pub reference_a: [f64; 2],
+    pub reference_a: c64,
     /// Gradient in the reference point of panel B.
-    pub reference_b: [f64; 2],
+    pub reference_b: c64,
     /// Gradient in the angle of e_sec.
     pub frame_angle: f64,
 }
 
 impl HingeMotion {
     /// The motions of all hinges of a sheet.
-    pub fn all(sheet: &Sheet, configuration: &[[f64; 3]]) -> Vec<Self> {
+    pub fn all(sheet: &Sheet, configuration: &[Motion]) -> Vec<Self> {
         let hinges = 0..sheet.hinges.len();
         hinges.map(|h| Self::new(sheet, h, configuration)).collect()
     }
 
     /// The kinematics of one hinge, given by its index.
-    pub fn new(sheet: &Sheet, hinge: usize, configuration: &[[f64; 3]]) -> Self {
+    pub fn new(sheet: &Sheet, hinge: usize, configuration: &[Motion]) -> Self {
         let hinge = &sheet.hinges[hinge];
         let [a, b] = hinge.panels();
         let [c_a, c_b] = [a, b].map(|panel| complex(sheet.panels[panel].reference));
@@ -177,8 +182,7 @@ impl HingeMotion {
     /// The rate of (a, s, theta) under a motion of panels A and B.
     pub fn rates(&self, motion: [f64; 6]) -> [f64; 3] {
         let y = relative_motion(motion);
-        let translation: c64 =
-            std::iter::zip(self.translation_rates(), y).map(|(rate, y)| rate * y).sum();
+        let translation: c64 = zip(self.translation_rates(), y).map(|(rate, y)| rate * y).sum();
         [translation.re, translation.im, y[3]]
     }
 
@@ -194,7 +198,7 @@ impl HingeMotion {
             (jacobian[0][j], jacobian[1][j]) = (rate.re, rate.im);
         }
         let mut by_z = [[0.0; 4]; 4];
-        for (row, of_row) in std::iter::zip(tangent, &jacobian) {
+        for (row, of_row) in zip(tangent, &jacobian) {
             for j in 0..4 {
                 let product =
                     row[0] * jacobian[0][j] + row[1] * jacobian[1][j] + row[2] * jacobian[2][j];
@@ -219,8 +223,8 @@ impl HingeMotion {
         const COPIES: [(usize, f64); 6] =
             [(0, -1.0), (1, -1.0), (2, 1.0), (0, 1.0), (1, 1.0), (3, 1.0)];
         let mut stiffness = [[0.0; 6]; 6];
-        for (row, (i, sign)) in std::iter::zip(&mut stiffness, COPIES) {
-            for (entry, (j, other)) in std::iter::zip(row, COPIES) {
+        for (row, (i, sign)) in zip(&mut stiffness, COPIES) {
+            for (entry, (j, other)) in zip(row, COPIES) {
                 *entry = sign * other * by_z[i][j];
             }
         }
@@ -232,9 +236,9 @@ impl HingeMotion {
         let force = c64::new(weights[0], weights[1]);
         let back = force * self.frame.conj();
         HingeGeometryGradient {
-            attachment: point(back * (self.half - self.half.conj()).conj()),
-            reference_a: point(force * (self.frame * self.half.conj() - self.mean).conj()),
-            reference_b: point(force * (self.mean - self.frame * self.half).conj()),
+            attachment: back * (self.half - self.half.conj()).conj(),
+            reference_a: force * (self.frame * self.half.conj() - self.mean).conj(),
+            reference_b: force * (self.mean - self.frame * self.half).conj(),
             frame_angle: cross(force, self.translation),
         }
     }
@@ -251,9 +255,9 @@ impl HingeMotion {
         let [a, s, _] = self.rates(motion);
         let (spin, open) = (-I * mean * self.mean, 0.5 * I * relative * self.frame);
         HingeGeometryGradient {
-            attachment: point(force * (open * (self.half + self.half.conj())).conj()),
-            reference_a: point(force * (-spin - open * self.half.conj()).conj()),
-            reference_b: point(force * (spin - open * self.half).conj()),
+            attachment: force * (open * (self.half + self.half.conj())).conj(),
+            reference_a: force * (-spin - open * self.half.conj()).conj(),
+            reference_b: force * (spin - open * self.half).conj(),
             frame_angle: cross(force, c64::new(a, s)),
         }
     }
@@ -262,4 +266,22 @@ impl HingeMotion {
 /// y = (Delta u_x, Delta u_y, phibar, theta) of a motion of panels A and B.
 fn relative_motion([ax, ay, phi_a, bx, by, phi_b]: [f64; 6]) -> [f64; 4] {
     [bx - ax, by - ay, 0.5 * (phi_a + phi_b), phi_b - phi_a]
+}
+
+/// Adds `factor` times a vector (x, y, phi) per panel to a sum.
+pub(crate) fn add_motions(sum: &mut [Motion], motion: &[Motion], factor: f64) {
+    vectors::add(sum.as_flattened_mut(), motion.as_flattened(), factor);
+}
+
+/// The components of the two panels of a hinge.
+pub(crate) fn at_hinge(hinge: &Hinge, by_panel: &[Motion]) -> [f64; 6] {
+    let [a, b] = hinge.panels().map(|panel| by_panel[panel]);
+    [a[0], a[1], a[2], b[0], b[1], b[2]]
+}
+
+/// Adds the components of the two panels of a hinge.
+pub(crate) fn add_at_hinge(by_panel: &mut [Motion], hinge: &Hinge, components: [f64; 6]) {
+    for (panel, components) in zip(hinge.panels(), components.chunks(3)) {
+        vectors::add(&mut by_panel[panel], components, 1.0);
+    }
 }

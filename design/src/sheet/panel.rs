@@ -5,7 +5,8 @@ use crate::geometry::region::Contour;
 use crate::pattern::grid::{NW, SE, SW};
 use crate::sheet::topology::Trim;
 use faer::c64;
-use support::fault::{Fault, fault};
+use std::array::from_fn;
+use support::{Fault, Point, refuse};
 
 /// A point of a panel in the flat sheet.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -16,23 +17,23 @@ pub enum PanelPoint {
     /// The middle between two corners.
     Middle([usize; 2]),
     /// A point that does not move with the cuts (mm).
-    Fixed([f64; 2]),
+    Fixed(Point),
 }
 
 /// A rigid panel in the flat sheet.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Panel {
     /// SW, SE, NE, NW of its cell (mm).
-    pub corners: [[f64; 2]; 4],
+    pub corners: [Point; 4],
     /// The polygon that it is, counter-clockwise: the corners, unless it is trimmed (mm).
-    pub boundary: Vec<[f64; 2]>,
+    pub boundary: Vec<Point>,
     pub(crate) trim: Option<Trim>,
     /// The point whose motion is (u_x, u_y), where the panel is held or pulled.
     pub point: PanelPoint,
     /// Its position (mm).
-    pub reference: [f64; 2],
+    pub reference: Point,
     /// The centroid of the area (mm).
-    pub centroid: [f64; 2],
+    pub centroid: Point,
     /// mm^2
     pub area: f64,
 }
@@ -40,7 +41,7 @@ pub struct Panel {
 impl Panel {
     pub(super) fn new(
         panel: usize,
-        corners: [[f64; 2]; 4],
+        corners: [Point; 4],
         trim: Option<Trim>,
     ) -> Result<Self, Fault> {
         let boundary = boundary(&corners, trim.as_ref());
@@ -49,8 +50,9 @@ impl Panel {
         let sectors = sectors(&arms);
         let area = 0.5 * sectors.iter().sum::<f64>();
         if !(area > 0.0 && area.is_finite()) {
-            let what = format!("panel {panel} has the area {area} mm^2, which must be positive");
-            return Err(fault("", what, "its cuts have collapsed"));
+            refuse!(
+                "panel {panel} has the area {area} mm^2, which must be positive: its cuts have collapsed"
+            );
         }
         let next = |j: usize| (j + 1) % arms.len();
         let moment: c64 = (0..arms.len()).map(|j| (arms[j] + arms[next(j)]) * sectors[j]).sum();
@@ -78,7 +80,7 @@ impl Panel {
     }
 
     /// The position of a point of the panel in the flat sheet (mm).
-    pub fn position(&self, point: PanelPoint) -> [f64; 2] {
+    pub fn position(&self, point: PanelPoint) -> Point {
         match point {
             PanelPoint::Centroid => self.centroid,
             PanelPoint::Middle([from, to]) => {
@@ -92,7 +94,7 @@ impl Panel {
     /// boundary.
     pub(crate) fn corner_pullback(&self, point: usize, gradient: c64) -> [c64; 4] {
         let [south_east, north_west] = match &self.trim {
-            None => return std::array::from_fn(|corner| f64::from(corner == point) * gradient),
+            None => return from_fn(|corner| f64::from(corner == point) * gradient),
             Some(trim) => trim[point],
         };
         let mut corners = [c64::ZERO; 4];
@@ -107,18 +109,18 @@ impl Panel {
         let by_points = gradients.iter().enumerate();
         by_points.fold([c64::ZERO; 4], |sum, (point, gradient)| {
             let corners = self.corner_pullback(point, *gradient);
-            std::array::from_fn(|corner| sum[corner] + corners[corner])
+            from_fn(|corner| sum[corner] + corners[corner])
         })
     }
 
     /// The gradient in the corners of a function with the given gradient in a point.
-    pub(super) fn pullback(&self, point: PanelPoint, gradient: [f64; 2]) -> [c64; 4] {
+    pub(super) fn pullback(&self, point: PanelPoint, gradient: c64) -> [c64; 4] {
         match point {
             PanelPoint::Centroid => self.centroid_pullback(gradient),
             PanelPoint::Middle(ends) => {
                 let mut corners = [c64::ZERO; 4];
                 for corner in ends {
-                    corners[corner] += complex(gradient) / 2.0;
+                    corners[corner] += gradient / 2.0;
                 }
                 corners
             }
@@ -139,9 +141,8 @@ impl Panel {
     ///
     /// Let p_j be the vectors from the centroid and S_j = p_j x p_(j+1). The centroid moves by
     /// sum_j [(dp_j + dp_(j+1)) S_j + (p_j + p_(j+1)) dS_j] / (3 sum_j S_j).
-    fn centroid_pullback(&self, gradient: [f64; 2]) -> [c64; 4] {
-        let gradient = complex(gradient);
-        let arm = |corner: &[f64; 2]| complex(*corner) - complex(self.centroid);
+    fn centroid_pullback(&self, gradient: c64) -> [c64; 4] {
+        let arm = |corner: &Point| complex(*corner) - complex(self.centroid);
         let arms: Vec<c64> = self.boundary.iter().map(arm).collect();
         let sectors = sectors(&arms);
         let scaled = gradient / (3.0 * sectors.iter().sum::<f64>());
@@ -157,10 +158,10 @@ impl Panel {
 }
 
 /// The polygon that a panel is, counter-clockwise (mm).
-pub fn boundary(corners: &[[f64; 2]; 4], trim: Option<&Trim>) -> Contour {
+pub fn boundary(corners: &[Point; 4], trim: Option<&Trim>) -> Contour {
     let along = |c: usize, to: usize| corners[to][c] - corners[SW][c];
     let in_cell =
-        |[x, y]: &[f64; 2]| [0, 1].map(|c| corners[SW][c] + x * along(c, SE) + y * along(c, NW));
+        |[x, y]: &Point| [0, 1].map(|c| corners[SW][c] + x * along(c, SE) + y * along(c, NW));
     trim.map_or_else(|| corners.to_vec(), |trim| trim.iter().map(in_cell).collect())
 }
 

@@ -3,6 +3,7 @@
 
 use crate::cases;
 use crate::prelude::*;
+use design::geometry::plane::point;
 use design::sheet::kinematics::{Configuration, HingeGeometryGradient, HingeMotion};
 
 fn sheet(options: SheetOptions) -> Sheet {
@@ -112,8 +113,8 @@ fn derivatives_in_the_flat_geometry() {
 }
 
 fn flattened(gradient: HingeGeometryGradient) -> [f64; 7] {
-    let [ox, oy] = gradient.attachment;
-    let ([ax, ay], [bx, by]) = (gradient.reference_a, gradient.reference_b);
+    let [ox, oy] = point(gradient.attachment);
+    let [[ax, ay], [bx, by]] = [gradient.reference_a, gradient.reference_b].map(point);
     [ox, oy, ax, ay, bx, by, gradient.frame_angle]
 }
 

@@ -2,6 +2,7 @@
 
 use crate::cases;
 use crate::prelude::*;
+use design::geometry::plane::{complex, point};
 use design::sheet::ideal_deployment::ideal_deployment_pullback;
 
 const WIDTHS: WidthChart = WidthChart { w_minus: 0.05, w_plus: 0.25 };
@@ -80,12 +81,14 @@ fn random_weights(sheet: &Sheet) -> SheetGradient {
     let mut random = Random::new(7);
     let (panels, hinges) = (sheet.panels.len(), sheet.hinges.len());
     SheetGradient {
-        corners: random.arrays(4 * panels, 1.0).as_chunks().0.to_vec(),
-        references: random.arrays(panels, 1.0),
-        centroids: random.arrays(panels, 1.0),
+        corners: (random.arrays(4 * panels, 1.0).as_chunks().0.iter())
+            .map(|corners: &[[f64; 2]; 4]| corners.map(complex))
+            .collect(),
+        references: random.arrays(panels, 1.0).into_iter().map(complex).collect(),
+        centroids: random.arrays(panels, 1.0).into_iter().map(complex).collect(),
         areas: random.numbers(panels, 1.0),
-        attachments: random.arrays(hinges, 1.0),
-        tips: random.arrays(hinges, 1.0),
+        attachments: random.arrays(hinges, 1.0).into_iter().map(complex).collect(),
+        tips: random.arrays(hinges, 1.0).into_iter().map(complex).collect(),
         frame_angles: random.numbers(hinges, 1.0),
         alphas: random.numbers(hinges, 1.0),
         widths: random.numbers(hinges, 1.0),
@@ -96,14 +99,15 @@ fn random_weights(sheet: &Sheet) -> SheetGradient {
 fn weighted(sheet: &Sheet, weights: &SheetGradient) -> f64 {
     let mut sum = 0.0;
     for (k, panel) in sheet.panels.iter().enumerate() {
-        let by_corners = weights.corners[k].as_flattened();
-        sum += dot(panel.corners.as_flattened(), by_corners);
-        sum += dot(&panel.reference, &weights.references[k]);
-        sum += dot(&panel.centroid, &weights.centroids[k]);
+        let by_corners = weights.corners[k].map(point);
+        sum += dot(panel.corners.as_flattened(), by_corners.as_flattened());
+        sum += dot(&panel.reference, &point(weights.references[k]));
+        sum += dot(&panel.centroid, &point(weights.centroids[k]));
         sum += panel.area * weights.areas[k];
     }
     for (h, hinge) in sheet.hinges.iter().enumerate() {
-        sum += dot(&hinge.attachment, &weights.attachments[h]) + dot(&hinge.tip, &weights.tips[h]);
+        sum += dot(&hinge.attachment, &point(weights.attachments[h]));
+        sum += dot(&hinge.tip, &point(weights.tips[h]));
         sum += weights.frame_angles[h] * hinge.e_sec[1].atan2(hinge.e_sec[0]);
         sum += weights.alphas[h] * hinge.alpha + weights.widths[h] * hinge.w_lig;
         sum += weights.holes[h] * sheet.designs()[h].fillet_ratio;

@@ -4,7 +4,7 @@
 //! terminated leaves an incomplete last block: an unterminated line and an incomplete last frame
 //! are dropped. Any input gives either frames or an error that names the line.
 
-use support::fault::{Fault, fault};
+use support::{Fault, fault};
 
 /// The numbers of rows that a complete increment prints.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -102,8 +102,7 @@ pub(crate) fn read_printed<F: Printed>(bytes: &[u8], layout: &F::Layout) -> Resu
     let mut frames: Vec<F> = Vec::new();
     let mut block = None;
     for (number, line) in text.lines().enumerate() {
-        let line_error =
-            |what: &str| fault(format!("the solver's output, line {}", number + 1), what, "");
+        let line_error = |what: &str| fault!("the solver's output, line {}: {what}", number + 1);
         let line = line.trim();
         if line.is_empty() {
             continue;
@@ -135,13 +134,10 @@ pub(crate) fn read_printed<F: Printed>(bytes: &[u8], layout: &F::Layout) -> Resu
         frames.pop();
     }
     match frames.iter().find(|frame| !frame.is_complete(layout)) {
-        Some(frame) => {
-            let lambda = frame.time();
-            let what = format!(
-                "the solver's output is incomplete at lambda = {lambda}, which is not the last increment"
-            );
-            Err(Fault::from(what))
-        }
+        Some(frame) => Err(fault!(
+            "the solver's output is incomplete at lambda = {}, which is not the last increment",
+            frame.time()
+        )),
         None => Ok(frames),
     }
 }
@@ -241,6 +237,52 @@ fn number_in(field: &str) -> Option<f64> {
     number.filter(|x| x.is_finite())
 }
 
+// Reader of CalculiX .sta files: one line per attempted increment.
+//
+// The file contains the progress of the solver in a machine-readable form: the lambda reached, the
+// number of iterations, and the increments that the output must contain. Reading never fails: a
+// line that is not an attempt, or that was truncated, is skipped.
+
+/// One attempted increment.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Increment {
+    /// Total time (lambda): at the end of the increment if it converged, otherwise at its start.
+    pub lambda: f64,
+    /// Newton iterations of the attempt.
+    pub iterations: usize,
+    /// Whether the increment converged.
+    pub converged: bool,
+}
+
+/// Reads the attempted increments in their order.
+pub fn read_sta(bytes: &[u8]) -> Vec<Increment> {
+    let end = bytes.iter().rposition(|b| *b == b'\n').map_or(0, |i| i + 1);
+    let text = String::from_utf8_lossy(&bytes[..end]);
+    text.lines().filter_map(attempt).collect()
+}
+
+/// Parses STEP INC ATT ITRS TOT-TIME STEP-TIME INC-TIME; a U after ATT means that the attempt
+/// diverged.
+fn attempt(line: &str) -> Option<Increment> {
+    let fields: Vec<_> = line.split_whitespace().collect();
+    let [step, increment, attempt, iterations, lambda, in_step, length] = fields[..] else {
+        return None;
+    };
+    let number = attempt.trim_end_matches('U');
+    for count in [step, increment, number] {
+        count.parse::<usize>().ok()?;
+    }
+    let [lambda, ..] = [lambda, in_step, length].map(|time| {
+        let time = time.parse::<f64>().ok();
+        time.filter(|time| time.is_finite() && *time >= 0.0)
+    });
+    Some(Increment {
+        lambda: lambda?,
+        iterations: iterations.parse().ok()?,
+        converged: number == attempt,
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -303,7 +345,7 @@ mod tests {
     fn damage_inside_the_output_is_an_error() {
         let missing = two_increments().replacen("         1   8  1.5E-02\n", "", 1);
         let error = read_dat(missing.as_bytes(), LAYOUT).unwrap_err();
-        assert!(error.what.contains("incomplete at lambda = 0.5"), "{error}");
+        assert!(error.to_string().contains("incomplete at lambda = 0.5"), "{error}");
         for (old, new) in [
             ("4.25E+01", "NaN"),
             // A node that the mesh does not have.
@@ -315,7 +357,7 @@ mod tests {
         ] {
             let damaged = two_increments().replacen(old, new, 1);
             let error = read_dat(damaged.as_bytes(), LAYOUT).unwrap_err();
-            assert!(error.place.contains(", line "), "{old}: {error}");
+            assert!(error.to_string().contains(", line "), "{old}: {error}");
         }
     }
 
@@ -358,6 +400,43 @@ mod tests {
             let at = at % bytes.len();
             bytes[at] = byte;
             let _ = read_dat(&bytes, LAYOUT);
+        }
+    }
+}
+
+#[cfg(test)]
+mod sta_tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    const STATUS: &str = "SUMMARY OF JOB INFORMATION
+  STEP      INC     ATT  ITRS     TOT TIME     STEP TIME      INC TIME
+     1          1     1U    4  0.000000E+00  0.000000E+00  0.500000E-02
+     1          1     2     4  0.125000E-02  0.125000E-02  0.125000E-02
+     1          2     1     3  0.250000E-02  0.250000E-02  0.125000E-02
+";
+
+    #[test]
+    fn attempts_are_read_with_their_outcome() {
+        let attempt = |lambda, iterations, converged| Increment { lambda, iterations, converged };
+        assert_eq!(
+            read_sta(STATUS.as_bytes()),
+            [attempt(0.0, 4, false), attempt(0.00125, 4, true), attempt(0.0025, 3, true)]
+        );
+        assert_eq!(read_sta(b""), []);
+    }
+
+    proptest! {
+        #[test]
+        fn a_truncated_file_gives_its_complete_lines(cut in 0..STATUS.len()) {
+            let whole = read_sta(STATUS.as_bytes());
+            let attempts = read_sta(&STATUS.as_bytes()[..cut]);
+            prop_assert_eq!(&attempts[..], &whole[..attempts.len()]);
+        }
+
+        #[test]
+        fn any_bytes_are_read(bytes in proptest::collection::vec(any::<u8>(), 0..400)) {
+            prop_assert!(read_sta(&bytes).iter().all(|attempt| attempt.lambda.is_finite()));
         }
     }
 }

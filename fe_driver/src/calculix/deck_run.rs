@@ -10,7 +10,7 @@ use crate::{
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
-use support::file_error::FileError;
+use support::FileError;
 use support::program::{Run, Tool, ToolEnd, ToolError, ToolKind, output_file, remove_stale, tail};
 
 /// The word with which CalculiX begins its message on a problem that it cannot solve, at the end of

@@ -15,9 +15,7 @@ use serde::{Deserialize, Serialize};
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
-use support::fault::{Fault, fault};
-use support::file_error::FileError;
-use support::toml_file;
+use support::{fault, toml_file};
 
 /// A campaign with its material, from a TOML file of `configs/campaigns/`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -61,20 +59,6 @@ pub struct Campaign {
     /// The regions of designs and ray ends.
     #[serde(rename = "rays")]
     pub boxes: Vec<RayBox>,
-}
-
-/// Why a campaign cannot be read, planned, run or collected.
-#[derive(Debug, thiserror::Error)]
-pub enum CampaignError {
-    /// What a person must put right.
-    #[error(transparent)]
-    Fault(#[from] Fault),
-    /// A file cannot be read or written.
-    #[error(transparent)]
-    File(#[from] FileError),
-    /// A solve has ended the run.
-    #[error(transparent)]
-    Solve(#[from] SolveListError),
 }
 
 /// What a job of a campaign is for.
@@ -139,10 +123,10 @@ impl Campaign {
     }
 
     /// Reads a campaign, its material and its further rays.
-    pub fn load(path: &Path) -> Result<Self, CampaignError> {
-        let other = |error: &dyn Display| Fault::from(error.to_string());
+    pub fn load(path: &Path) -> Result<Self, SolveListError> {
+        let other = |error: &dyn Display| fault!("{error}");
         let mut campaign: Self = toml_file::read(path).map_err(|error| other(&error))?;
-        let invalid = |reason: String| fault(path.display().to_string(), reason, "");
+        let invalid = |reason: String| fault!("{}: {reason}", path.display());
         campaign.check().map_err(invalid)?;
         let folder = path.parent().unwrap_or(Path::new(""));
         let material = SheetMaterial::load(&folder.join(&campaign.material_file));
@@ -224,7 +208,7 @@ impl Campaign {
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
-    use crate::solve::problem::Solve;
+    use crate::solve::solver::Solve;
 
     fn shipped(name: &str) -> PathBuf {
         Path::new(env!("CARGO_MANIFEST_DIR")).join("../configs/campaigns").join(name)

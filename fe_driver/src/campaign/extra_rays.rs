@@ -11,8 +11,7 @@ use hinge::{HingeConstants, HingeDeformation};
 use serde::Deserialize;
 use std::f64::consts::FRAC_PI_2;
 use std::path::Path;
-use support::csv_table;
-use support::fault::{Fault, fault};
+use support::{Fault, csv_table, refuse};
 
 /// One row of the file: a hinge and the end of its ray.
 #[derive(Deserialize)]
@@ -33,7 +32,7 @@ pub(crate) fn read_extra_rays(path: &Path, common: &HingeConstants) -> Result<Ve
     for (i, (_, row)) in rows.into_iter().enumerate() {
         let ray = row.ray(common);
         if let Some(reason) = row.defect(&ray) {
-            return Err(fault(format!("{}, ray {}", path.display(), i + 1), reason, ""));
+            refuse!("{}, ray {}: {reason}", path.display(), i + 1);
         }
         // A ray that occurs twice is one job.
         if !rays.contains(&ray) {

@@ -11,9 +11,7 @@ use std::fmt;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf, absolute};
 use std::process::Command;
-use support::fault::{Fault, fault};
-use support::file_error::FileError;
-use support::{lock_file, verbose, whole_file};
+use support::{Fault, FileError, fault, lock_file, refuse, verbose, whole_file};
 
 /// The script of a task and of the job that collects.
 const SCRIPT: &str = include_str!("../../../configs/cluster/slurm.sh");
@@ -114,7 +112,7 @@ fn job(answer: &str) -> Result<String, Fault> {
 }
 
 fn unread(program: &str, answer: &str, what: &str) -> Fault {
-    Fault::from(format!("{program} printed {answer:?}, not {what}"))
+    fault!("{program} printed {answer:?}, not {what}")
 }
 
 /// The folder of script, logs and the record of the last submission, in the folder of a campaign.
@@ -139,23 +137,23 @@ pub fn submit_array(
     std::fs::create_dir_all(&folder).map_err(FileError::at(&folder))?;
     let path = folder.join("submit.lock");
     let lock = lock_file::try_hold(&path).map_err(|error| match error.kind() {
-        ErrorKind::WouldBlock => {
-            let what = "another `campaign submit` of this campaign is at work";
-            fault("", what, format!("it holds {}", path.display()))
-        }
+        ErrorKind::WouldBlock => fault!(
+            "another `campaign submit` of this campaign is at work: it holds {}",
+            path.display()
+        ),
         _ => FileError::at(&path)(error).into(),
     })?;
     if let Some(states) = array_states(campaign_folder)?.filter(ArrayStates::is_active) {
-        let remedy = format!("wait until it ends, or cancel it with {}", cancel(&states.array));
-        return Err(fault("", states.to_string(), remedy));
+        refuse!("{states}: wait until it ends, or cancel it with {}", cancel(&states.array));
     }
     let path = folder.join("array.sh");
     let script = whole_file::write(&path, SCRIPT.as_bytes()).and_then(|()| path.canonicalize());
     let script = script.map_err(FileError::at(&path))?;
     if script.to_str().is_none_or(|name| name.contains(char::is_control)) {
-        let what =
-            "squeue cannot list this name, because of a line break or bytes that are no UTF-8";
-        return Err(fault(format!("{script:?}"), what, "choose another with --folder"));
+        refuse!(
+            "{script:?}: squeue cannot list this name, because of a line break or bytes that are no UTF-8: choose another with \
+     --folder"
+        );
     }
     refuse_unrecorded(&script)?;
     let sbatch = |options: Vec<String>, verb: &str| {
@@ -174,12 +172,10 @@ pub fn submit_array(
     let count = tasks.count;
     let array = sbatch(vec![format!("--array=1-{count}")], "run").map_err(|error| {
         match error.to_string() {
-            text if text.contains("Invalid job array") => {
-                let what = format!(
-                    "{text}; the site allows fewer than its MaxArraySize (`scontrol show config`)"
-                );
-                fault(format!("{count} tasks"), what, "choose a smaller --shards")
-            }
+            text if text.contains("Invalid job array") => fault!(
+    "{count} tasks: {text}; the site allows fewer than its MaxArraySize (`scontrol show config`): choose a smaller \
+     --shards"
+),
             _ => error,
         }
     })?;
@@ -190,10 +186,8 @@ pub fn submit_array(
     let options = [format!("--dependency=afterany:{id}")].into_iter().chain(cluster);
     let collect = sbatch(options.collect(), "collect").map_err(|error| {
         let (array, cancel) = (&submission.array, cancel(&submission.array));
-        Fault::from(format!(
-            "array {array} is submitted, but not the job that collects the database: {error}. Run `kirigami campaign \
-             collect` when the array has ended, or cancel it with {cancel}"
-        ))
+        fault!("array {array} is submitted, but not the job that collects the database: {error}. Run `kirigami campaign \
+             collect` when the array has ended, or cancel it with {cancel}")
     })?;
     submission.collect = Some(collect);
     write_json(&folder.join(RECORD), &submission)?;
@@ -245,15 +239,10 @@ fn refuse_unrecorded(script: &Path) -> Result<(), Fault> {
     let mut jobs = queue.lines().filter(runs_script).filter_map(state);
     match jobs.find(|(_, state)| !has_ended(state)) {
         None => Ok(()),
-        Some((job, _)) => Err(fault(
-            "",
-            format!(
-                "job {job} runs the script {name} and has not ended, though its submission was stopped before it was recorded"
-            ),
-            format!(
-                "wait until it ends and run `kirigami campaign collect`, or cancel it with {}",
-                cancel(&job)
-            ),
+        Some((job, _)) => Err(fault!(
+            "job {job} runs the script {name} and has not ended, though its submission was stopped before it was recorded: wait \
+     until it ends and run `kirigami campaign collect`, or cancel it with {}",
+            cancel(&job)
         )),
     }
 }
@@ -268,12 +257,10 @@ pub fn array_states(campaign_folder: &Path) -> Result<Option<ArrayStates>, Fault
     let ids: Vec<&str> = [id].into_iter().chain(collect.as_ref().map(|job| parts(job).0)).collect();
     let jobs = [format!("--jobs={}", ids.join(","))].into_iter().chain(cluster);
     let known = known_states(&jobs.collect::<Vec<_>>()).map_err(|error| {
-        let record = record.display();
-        fault(
-            "",
-            format!("Slurm does not say whether array {array} has ended ({error})"),
-            format!("try again later; if it has ended, delete {record}"),
-        )
+        fault!(
+    "Slurm does not say whether array {array} has ended ({error}): try again later; if it has ended, delete {}",
+    record.display()
+)
     })?;
     let state = |job: &str| known.get(job).map_or(UNKNOWN, String::as_str).to_owned();
     let mut counts = BTreeMap::new();
@@ -332,11 +319,10 @@ fn output(command: &mut Command) -> Result<String, Fault> {
     let output = command.output();
     let program = command.get_program().to_string_lossy();
     let output = output.map_err(|source| {
-        Fault::from(format!("cannot start {program}: {source}; is Slurm installed on this host?"))
+        fault!("cannot start {program}: {source}; is Slurm installed on this host?")
     })?;
     if !output.status.success() {
-        let message = String::from_utf8_lossy(&output.stderr);
-        return Err(fault(format!("{program} failed"), message.trim(), ""));
+        refuse!("{program} failed: {}", String::from_utf8_lossy(&output.stderr).trim());
     }
     Ok(String::from_utf8_lossy(&output.stdout).into_owned())
 }

@@ -9,6 +9,7 @@ use crate::{
     write_element, write_increments, write_material, write_nodes, write_set,
 };
 use mesher::{ElementKind, Part, SheetMesh, SheetShape, Side};
+use std::iter::zip;
 use support::add_line;
 
 /// Stiffness of the table below a node (N/mm).
@@ -151,7 +152,7 @@ impl SheetModel<'_> {
             {
                 continue;
             }
-            for (name, faces) in std::iter::zip(["A", "B"], flanks) {
+            for (name, faces) in zip(["A", "B"], flanks) {
                 add_line!(d, "*SURFACE,NAME=FLANK{h}{name}");
                 // The first two sides of an element are its lower and its upper face.
                 faces
@@ -208,7 +209,7 @@ impl SheetModel<'_> {
     /// them.
     fn loaded(&self) -> Vec<(usize, usize, f64)> {
         let total = self.problem.total_load();
-        let pulled = std::iter::zip(&self.nodes.pulled, &self.problem.pulled);
+        let pulled = zip(&self.nodes.pulled, &self.problem.pulled);
         pulled
             .flat_map(|(node, pulled)| [0, 1].map(|i| (node + 1, i + 1, pulled.force[i] / total)))
             .filter(|(.., fraction)| *fraction != 0.0)

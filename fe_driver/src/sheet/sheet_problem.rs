@@ -8,8 +8,8 @@ use crate::{StepControl, ToolVersions};
 use hinge::SheetMaterial;
 use mesher::{Panels, SheetShape, Tier};
 use serde::{Deserialize, Serialize};
-use support::fault::{Fault, fault};
 use support::interpolation::piece;
+use support::{Fault, Point, refuse};
 
 /// Version of the geometry, the input deck and the evaluation of sheets. It is increased when a
 /// change of the code changes results; solves of an older version are then stale.
@@ -34,9 +34,9 @@ pub enum Place {
     /// All of it outside of its windows.
     Panel,
     /// A point, through the thickness (mm).
-    Point([f64; 2]),
+    Point(Point),
     /// A straight line between two points of an edge (mm).
-    Line([[f64; 2]; 2]),
+    Line([Point; 2]),
 }
 
 /// A panel that is held.
@@ -56,9 +56,9 @@ pub struct Pulled {
     /// Index of the panel.
     pub panel: usize,
     /// The pulled point of its middle surface (mm).
-    pub at: [f64; 2],
+    pub at: Point,
     /// Force at full load (N).
-    pub force: [f64; 2],
+    pub force: Point,
 }
 
 /// A sheet problem, without what solves it.
@@ -111,9 +111,9 @@ pub(crate) const SECONDS: f64 = 10.0;
 #[derive(Clone, Debug, PartialEq)]
 pub struct History {
     /// Fraction of the weight.
-    pub weight: Vec<[f64; 2]>,
+    pub weight: Vec<Point>,
     /// Fraction of the loads, the stroke and the motions of supports.
-    pub loads: Vec<[f64; 2]>,
+    pub loads: Vec<Point>,
 }
 
 /// Least area that points off one line span (mm^2).
@@ -150,22 +150,23 @@ impl SheetProblem {
     pub fn validate(&self) -> Result<(), Fault> {
         let moves = |held: &Held| held.motion.into_iter().flatten().any(|shift| shift != 0.0);
         if self.total_load() == 0.0 && !self.held.iter().any(moves) {
-            let remedy = "it needs a load, or a support that moves";
-            return Err(fault("", "nothing pulls the sheet", remedy));
+            refuse!("nothing pulls the sheet: it needs a load, or a support that moves");
         }
         if self.held.is_empty() {
-            return Err(fault("", "no panel is held", "the sheet is free to move"));
+            refuse!("no panel is held: the sheet is free to move");
         }
         if self.restraint == OutOfPlaneRestraint::Nothing && !self.is_held_upright() {
-            let what = "nothing keeps the sheet in its plane, and no panel is clamped";
-            let remedy = "it would fall out of it; clamp a panel, pin three that are not on one line, or hold it flat";
-            return Err(fault("", what, remedy));
+            refuse!(
+                "nothing keeps the sheet in its plane, and no panel is clamped: it would fall out of it; clamp a panel, pin three \
+     that are not on one line, or hold it flat"
+            );
         }
         if self.shape.model == Panels::Rigid
             && (self.contact || self.restraint == OutOfPlaneRestraint::Table)
         {
-            let what = "rigid panels have no flanks that touch and do not rest on a table";
-            return Err(fault("", what, "use --sheet meshed"));
+            refuse!(
+                "rigid panels have no flanks that touch and do not rest on a table: use --sheet meshed"
+            );
         }
         Ok(())
     }
@@ -177,7 +178,7 @@ impl SheetProblem {
             Place::Point(at) => Some(at),
             Place::Panel | Place::Line(_) => None,
         };
-        let points: Option<Vec<[f64; 2]>> = self.held.iter().map(point).collect();
+        let points: Option<Vec<Point>> = self.held.iter().map(point).collect();
         points.is_none_or(|points| {
             let [x, y] = points[0];
             let arms = points.iter().map(|point| [point[0] - x, point[1] - y]);
@@ -239,7 +240,7 @@ impl History {
 }
 
 /// The value at `x` of a table of (x, value), with straight lines between.
-fn interpolated(table: &[[f64; 2]], x: f64) -> f64 {
+fn interpolated(table: &[Point], x: f64) -> f64 {
     let ([_, from], [_, to], fraction) = piece(table, |row| row[0], x);
     from + fraction * (to - from)
 }

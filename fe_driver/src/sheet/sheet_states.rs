@@ -3,6 +3,7 @@
 
 use crate::SolvedPath;
 use serde::{Deserialize, Serialize};
+use std::array::from_fn;
 use std::io;
 use support::vtk::{CellKind, Field, UnstructuredGrid};
 
@@ -108,7 +109,7 @@ impl PanelState {
     /// The position of a point of the flat sheet on the rigid panel (mm).
     pub fn moved(&self, [x, y]: [f64; 2]) -> [f64; 3] {
         let arm = [x - self.centre[0], y - self.centre[1], -self.centre[2]];
-        std::array::from_fn(|i| {
+        from_fn(|i| {
             let turned: f64 = (0..3).map(|j| self.rotation[i][j] * arm[j]).sum();
             self.centre[i] + self.shift[i] + turned
         })
@@ -136,7 +137,7 @@ impl SheetSurface {
             let edges = (0..face.len()).map(|i| (face[i], face[(i + 1) % face.len()]));
             let normal = edges.fold([0.0; 3], |sum, (from, to)| {
                 let (p, q) = (deformed[from], deformed[to]);
-                std::array::from_fn(|i| {
+                from_fn(|i| {
                     let (j, k) = ((i + 1) % 3, (i + 2) % 3);
                     sum[i] + p[j] * q[k] - p[k] * q[j]
                 })

@@ -13,13 +13,15 @@ use crate::{
 use serde::Serialize;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
-use support::file_error::FileError;
 use support::worker_pool::{NoThread, Reports, work_through};
+use support::{Fault, FileError};
 
 /// Why a list of solves ended before its last solve. What was solved until then is kept.
 #[derive(Debug, thiserror::Error)]
 #[allow(missing_docs, reason = "the message of a variant is its documentation")]
 pub enum SolveListError {
+    #[error(transparent)]
+    Fault(#[from] Fault),
     #[error(transparent)]
     File(#[from] FileError),
     #[error(transparent)]

@@ -7,6 +7,7 @@
 
 use hinge::{HingeDeformation, HingeDesign, Regime};
 use serde::{Deserialize, Serialize};
+use std::array::from_fn;
 use support::interpolation::piece;
 
 /// A piecewise linear path from the undeformed state at lambda = 0 to its end at lambda = 1.
@@ -84,13 +85,13 @@ impl DeformationPath {
     /// unloaded. `None` if it never turns back, by more than a right angle where each component is
     /// relative to its largest value on the path.
     pub fn turn(&self) -> Option<f64> {
-        let largest: [f64; 3] = std::array::from_fn(|c| {
+        let largest: [f64; 3] = from_fn(|c| {
             let values = self.knots.iter().map(|(_, state)| state.to_array()[c].abs());
             values.fold(f64::MIN_POSITIVE, f64::max)
         });
         let leg = |i: usize| -> [f64; 3] {
             let [from, to] = [i, i + 1].map(|i| self.knots[i].1.to_array());
-            std::array::from_fn(|c| (to[c] - from[c]) / largest[c])
+            from_fn(|c| (to[c] - from[c]) / largest[c])
         };
         let turns_back = |&i: &usize| {
             let legs = std::iter::zip(leg(i - 1), leg(i));
@@ -111,7 +112,7 @@ impl DeformationPath {
     pub fn at(&self, lambda: f64) -> HingeDeformation {
         let ((_, from), (_, to), fraction) = piece(&self.knots, |(at, _)| *at, lambda);
         let (x, y) = (from.to_array(), to.to_array());
-        std::array::from_fn(|i| x[i] + fraction * (y[i] - x[i])).into()
+        from_fn(|i| x[i] + fraction * (y[i] - x[i])).into()
     }
 }
 

@@ -4,9 +4,8 @@
 use mesher::MeshError;
 use serde::{Deserialize, Serialize};
 use strum::VariantNames;
-use support::fault::Fault;
-use support::file_error::FileError;
 use support::program::{ToolEnd, ToolError};
+use support::{Fault, FileError, fault};
 
 /// Why a solve has no samples, or only samples of a part of its path. Records and tables use its
 /// name.
@@ -62,7 +61,7 @@ pub enum Cause {
 /// The error for a name that is no kind of failure.
 fn unknown(name: &str) -> Fault {
     let known = FailureKind::VARIANTS.join(", ");
-    Fault::from(format!("unknown failure `{name}`; choose one of {known}"))
+    fault!("unknown failure `{name}`; choose one of {known}")
 }
 
 impl FailureKind {

@@ -95,10 +95,10 @@ mod tests {
     use crate::solve::failure::AttemptKind;
     use crate::solve::failure::FailureKind;
     use crate::solve::failure::SolveError;
-    use crate::solve::problem::SolvedPath;
     use crate::solve::solver::Solution;
-    use crate::solve::step_control::StepControl;
+    use crate::solve::solver::SolvedPath;
     use crate::solve::tests::{FakeSolver, Fault, STIFFNESS, healthy, solve_to};
+    use crate::solve::window_solve::StepControl;
     use mesher::Tier;
     use serde::{Deserialize, Serialize};
     use std::io;

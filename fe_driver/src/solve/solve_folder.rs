@@ -16,8 +16,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 use std::io;
 use std::path::{Path, PathBuf};
-use support::file_error::FileError;
-use support::{processes, regular_file, whole_file};
+use support::{FileError, processes, regular_file, whole_file};
 
 /// The state of a solve after its last attempt.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]

@@ -1,15 +1,15 @@
 //! Solves by a fake solver, for the tests of this crate.
 
-use crate::solve::solver::Solver;
-use crate::solve::solver::ToolVersions;
+use crate::solve::solver::{Solver, ToolVersions};
 use crate::solve::window_solve::WindowSolve;
 use hinge::HingeDeformation;
 use std::path::Path;
+
 #[path = "../../tests/common/fake_solver.rs"]
 mod fake_solver;
 
 use crate::solve::deformation_path::Ray;
-use crate::solve::problem::Solve;
+use crate::solve::solver::Solve;
 use crate::solve::window_solve::WindowProblem;
 pub use fake_solver::{FakeSolver, Fault};
 use hinge::{HingeConstants, Regime, SheetMaterial};

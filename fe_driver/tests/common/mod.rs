@@ -2,7 +2,7 @@
 #![allow(dead_code)] // every test program uses only a part
 
 use fe_driver::{
-    CalculiX, Campaign, CampaignError, Ccx, Ray, RunOptions, Shard, Solved, Tally, WindowProblem,
+    CalculiX, Campaign, Ccx, Ray, RunOptions, Shard, SolveListError, Solved, Tally, WindowProblem,
     finished_windows, run,
 };
 use hinge::{HingeConstants, HingeDeformation, HingeDesign, Regime, SheetMaterial};
@@ -66,7 +66,7 @@ pub fn run_with(
     campaign: &Campaign,
     folder: &Path,
     solver: &CalculiX,
-) -> Result<Tally, CampaignError> {
+) -> Result<Tally, SolveListError> {
     let never = AtomicBool::new(false);
     Ok(run(campaign, folder, solver, options, &never, &mut |_| {})?.tally)
 }

@@ -4,7 +4,8 @@
 use super::Script;
 use super::structured::{self, Rim};
 use crate::{Frame, Panels, PlacedWindow, SheetShape, Window, cross, dot, minus, unit};
-use support::add_line;
+use std::iter::zip;
+use support::{Point, add_line};
 
 /// Largest distance of a point on the edge of a panel from it (mm).
 const ON_EDGE: f64 = 1e-6;
@@ -31,7 +32,7 @@ pub(crate) fn sheet_script(shape: &SheetShape) -> Result<String, String> {
         let curves = structured::add(&mut geo, &Window(&window.design), &shape.plane);
         faces.push(first..=geo.patches);
         let sides = [curves.rim_a, curves.rim_b];
-        for (rim, (panel, corner)) in std::iter::zip(sides, window.panels) {
+        for (rim, (panel, corner)) in zip(sides, window.panels) {
             let ends = rim.ends.map(|end| window.frame.point(end));
             rims[panel][corner] = Some(Arc { number, rim, ends });
         }
@@ -56,7 +57,7 @@ struct Arc {
     number: usize,
     rim: Rim,
     /// Its ends in the sheet (mm), counter-clockwise about the window's origin.
-    ends: [[f64; 2]; 2],
+    ends: [Point; 2],
 }
 
 /// The boundary of a panel without its windows.
@@ -111,13 +112,13 @@ impl PanelOutline<'_> {
         &self,
         geo: &mut Script,
         corner: usize,
-        [from, to]: [(i32, [f64; 2]); 2],
-        marks: &mut Vec<[f64; 2]>,
+        [from, to]: [(i32, Point); 2],
+        marks: &mut Vec<Point>,
     ) -> Result<Vec<i32>, String> {
         let panel = &self.shape.panels[self.panel];
         let [first, last] = panel.edge(corner);
         let direction = unit(first, last);
-        let along = |point: [f64; 2]| dot(minus(point, from.1), direction);
+        let along = |point: Point| dot(minus(point, from.1), direction);
         let length = along(to.1);
         let radius = (self.rims.iter().flatten().next())
             .map(|arc| self.shape.windows[arc.number].design.r_win);
@@ -129,7 +130,7 @@ impl PanelOutline<'_> {
                  short; use a smaller r_win or larger panels"
             ));
         }
-        let across = |point: [f64; 2]| cross(direction, minus(point, from.1)).abs();
+        let across = |point: Point| cross(direction, minus(point, from.1)).abs();
         let mut stops: Vec<f64> = Vec::new();
         marks.retain(|mark| {
             let at = along(*mark);
@@ -160,7 +161,7 @@ impl PanelOutline<'_> {
     fn check_arc(&self, corner: usize, arc: &Arc) -> Result<(), String> {
         let panel = &self.shape.panels[self.panel];
         let edges = [panel.edge_before(corner), corner];
-        for (edge, end) in std::iter::zip(edges, [arc.ends[1], arc.ends[0]]) {
+        for (edge, end) in zip(edges, [arc.ends[1], arc.ends[0]]) {
             let [from, to] = panel.edge(edge);
             let off = cross(unit(from, to), minus(end, from)).abs();
             if off > ON_EDGE {
@@ -175,7 +176,7 @@ impl PanelOutline<'_> {
     }
 
     /// A mark in the interior is in the panel and outside of its windows.
-    fn check_mark(&self, mark: [f64; 2]) -> Result<(), String> {
+    fn check_mark(&self, mark: Point) -> Result<(), String> {
         let panel = &self.shape.panels[self.panel];
         let [x, y] = mark;
         let to_the_right = |corner: &usize| {

@@ -9,6 +9,7 @@
 use super::Script;
 use crate::{Side, Structured, Window, minus, polar_angle};
 use std::f64::consts::PI;
+use support::Point;
 
 /// Radius of block 1 over w_lig. It is only slightly larger than the hole, so that the rings of
 /// block 2 begin where the panels still bend. With 2.2, an oblique hinge in compression is 8 % too
@@ -47,7 +48,7 @@ pub(super) struct Rim {
     /// Its curves in the script.
     pub arcs: Vec<i32>,
     /// Its ends in the hinge frame (mm).
-    pub ends: [[f64; 2]; 2],
+    pub ends: [Point; 2],
 }
 
 /// Adds the patches of `window`.
@@ -102,7 +103,7 @@ pub(super) fn add(geo: &mut Script, window: &Window, recipe: &Structured) -> Win
 }
 
 impl Script {
-    fn points(&mut self, points: &[[f64; 2]]) -> Vec<i32> {
+    fn points(&mut self, points: &[Point]) -> Vec<i32> {
         points.iter().map(|point| self.point(*point)).collect()
     }
 
@@ -170,7 +171,7 @@ fn collar_radii(window: &Window) -> Vec<f64> {
 }
 
 /// Corners of the columns on the rim of block 1, counter-clockwise from the kerf face on B.
-fn inner_half_disc(window: &Window, recipe: &Structured) -> Vec<[f64; 2]> {
+fn inner_half_disc(window: &Window, recipe: &Structured) -> Vec<Point> {
     let radius = inner_radius(window.0.fillet_ratio) * window.0.w_lig;
     let k = edge_grading(recipe, inner_radius(window.0.fillet_ratio));
     let edge = (1..recipe.edge_columns).map(|i| {
@@ -185,7 +186,7 @@ fn inner_half_disc(window: &Window, recipe: &Structured) -> Vec<[f64; 2]> {
 
 /// Corners of the columns on the circle of radius `rho` (mm) about the tip: a blend of the
 /// directions of `outer` and equal angles.
-fn circle_points(window: &Window, outer: &[[f64; 2]], rho: f64) -> Vec<[f64; 2]> {
+fn circle_points(window: &Window, outer: &[Point], rho: f64) -> Vec<Point> {
     let (tip, mouth) = (window.0.tip(), window.mouth_half_angle(rho));
     let from = -window.0.alpha + mouth;
     let span = 2.0 * (PI - mouth);
@@ -209,7 +210,7 @@ fn circle_points(window: &Window, outer: &[[f64; 2]], rho: f64) -> Vec<[f64; 2]>
 }
 
 /// Polar angle (rad) of `p` relative to an axis at the angle `axis`.
-fn turned_angle(p: [f64; 2], axis: f64) -> f64 {
+fn turned_angle(p: Point, axis: f64) -> f64 {
     let (sin, cos) = axis.sin_cos();
     polar_angle([p[0] * cos + p[1] * sin, p[1] * cos - p[0] * sin])
 }

@@ -105,7 +105,7 @@ fn predictions(
         let mut predictions = vec![<[Vec<f64>; 5]>::default(); designs.len()];
         for (network, prepared) in std::iter::zip(networks, &prepared) {
             let energies = network.evaluate(prepared, states, Order::Forces);
-            let damages = network.damage_values(&designs, states);
+            let damages = network.damage(&designs, states, false);
             let hinges = std::iter::zip(energies, damages).zip(&designs);
             for (((energy, damage), design), predictions) in hinges.zip(&mut predictions) {
                 let ([f_a, f_s, m], w) = (energy.forces, design.w_lig);

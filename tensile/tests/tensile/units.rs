@@ -3,7 +3,7 @@
 
 use super::{OPTIONS, fit_with, write};
 use crate::synthetic::Law;
-use support::fault::Fault;
+use support::Fault;
 use tensile::{MaterialFit, Quantity, RecordOptions};
 
 /// sigma = 30.164 + 15 (1 - exp(-eps_p / 0.03)), of a specimen of 10 x 0.5 mm with a gauge length

@@ -2,7 +2,8 @@
 
 use crate::closed_form::{config, database, energies, finished, rows};
 use std::path::Path;
-use train::{Start, TrainError, Trained, Training, TrainingConfig};
+use support::Fault;
+use train::{Start, Trained, Training, TrainingConfig};
 
 /// A training of `epochs` epochs after `run` of them.
 fn begun(epochs: usize, run: usize) -> Training {
@@ -14,7 +15,7 @@ fn begun(epochs: usize, run: usize) -> Training {
     training
 }
 
-fn resumed(state: &Path, config: &TrainingConfig) -> Result<Training, TrainError> {
+fn resumed(state: &Path, config: &TrainingConfig) -> Result<Training, Fault> {
     let database = database(rows(20));
     let start = Start::State { state, pretrained: None };
     Training::new(&database, config, start)

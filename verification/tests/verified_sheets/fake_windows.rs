@@ -314,7 +314,7 @@ fn a_spot_check_keeps_the_states_of_the_windows_that_are_solved() {
     let tier = Tier::Tiny;
     let check = spot_check(&windows, &paths, &scene.material, tier).unwrap();
     assert_eq!((check.rows.len(), check.unknown_states), (9, 3));
-    assert!(check.unsolved[0].what.contains("(3 attempts"), "{}", check.unsolved[0]);
+    assert!(check.unsolved[0].to_string().contains("(3 attempts"), "{}", check.unsolved[0]);
     let row = &check.rows[0];
     assert_eq!((row.tier, row.tools.ccx.as_str()), (Fidelity::Solved(Tier::Tiny), "fake"));
     assert_eq!(row.material_hash, scene.material.law_hash());

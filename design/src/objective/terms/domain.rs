@@ -14,6 +14,7 @@ use crate::{
     objective::term::{Deployed, Term, TermGradient},
 };
 use hinge::{HingeDeformation, HingeDesign, TrainingDomain};
+use std::iter::zip;
 
 /// Gauge above which a state is penalised.
 const EDGE: f64 = 0.98;
@@ -46,9 +47,9 @@ impl Term for DomainPenalty {
         let per_state = 1.0 / (at.sheet.hinges.len() * at.path.len()) as f64;
         let mut value = 0.0;
         let designs = at.sheet.designs();
-        let hinges = std::iter::zip(&designs, &mut gradient.by_states);
+        let hinges = zip(&designs, &mut gradient.by_states);
         for (h, (design, by_hinge)) in hinges.enumerate() {
-            for (step, slopes) in std::iter::zip(at.path, by_hinge) {
+            for (step, slopes) in zip(at.path, by_hinge) {
                 let state = &step.deformations[h];
                 let (excess, by) = excess_of_state(domain, design, state);
                 value += per_state * excess;

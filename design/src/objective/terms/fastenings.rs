@@ -108,7 +108,7 @@ mod tests {
                 let mut gradient = TermGradient::zeros(&at);
                 let value = term.evaluate(&at, 1.0, &mut gradient);
                 let (by_points, by_widths) = sheet.pullback(&gradient.by_sheet);
-                let by_points = by_points.into_flattened().into_iter();
+                let by_points = by_points.into_iter().flat_map(|it| [it.re, it.im]);
                 (value, by_points.chain(by_widths).collect::<Vec<f64>>())
             };
             let (value, gradient) = all(&x);

@@ -16,9 +16,10 @@
 //! nothing. Corners closer than l_min leave no room for the windows of their hinges.
 
 use crate::{
-    geometry::plane::{I, add, complex, cross},
+    geometry::plane::{I, complex, cross},
     objective::term::{Deployed, Term, TermGradient, over_panels},
 };
+use faer::c64;
 
 /// Largest rho that is not penalised.
 const WELL_SHAPED: f64 = 4.0;
@@ -46,7 +47,7 @@ impl Term for PanelShape {
 }
 
 /// The mean over the corners of one panel; its gradient is added to `gradient`.
-fn stretched(corners: &[[f64; 2]; 4], gradient: &mut [[f64; 2]; 4]) -> f64 {
+fn stretched(corners: &[[f64; 2]; 4], gradient: &mut [c64; 4]) -> f64 {
     let corner = |j: usize| complex(corners[j % 4]);
     let mut value = 0.0;
     for j in 0..4 {
@@ -61,15 +62,15 @@ fn stretched(corners: &[[f64; 2]; 4], gradient: &mut [[f64; 2]; 4]) -> f64 {
         let weight = 0.5 * excess / sine;
         let by_e = (e + I * f * ratio) * weight;
         let by_f = (f - I * e * ratio) * weight;
-        add(&mut gradient[j], -by_e);
-        add(&mut gradient[(j + 1) % 4], by_e - by_f);
-        add(&mut gradient[(j + 2) % 4], by_f);
+        gradient[j] -= by_e;
+        gradient[(j + 1) % 4] += by_e - by_f;
+        gradient[(j + 2) % 4] += by_f;
     }
     value
 }
 
 /// The mean over the pairs of corners of one panel; its gradient is added to `gradient`.
-fn crowded(corners: &[[f64; 2]; 4], min_distance: f64, gradient: &mut [[f64; 2]; 4]) -> f64 {
+fn crowded(corners: &[[f64; 2]; 4], min_distance: f64, gradient: &mut [c64; 4]) -> f64 {
     let weight = 1.0 / PAIRS.len() as f64;
     let mut value = 0.0;
     for [i, j] in PAIRS {
@@ -79,8 +80,8 @@ fn crowded(corners: &[[f64; 2]; 4], min_distance: f64, gradient: &mut [[f64; 2];
         value += weight * lacking * lacking;
         let slope = -2.0 * weight * lacking * min_distance / distance.powi(2);
         let by_corner = apart * (slope / distance);
-        add(&mut gradient[j], by_corner);
-        add(&mut gradient[i], -by_corner);
+        gradient[j] += by_corner;
+        gradient[i] -= by_corner;
     }
     value
 }

@@ -11,7 +11,7 @@
 //! design with a thinner one, because steps to an infinite loss are halved.
 
 use crate::{
-    geometry::plane::{I, add, complex, cross},
+    geometry::plane::{I, complex, cross},
     objective::term::{Deployed, Term, TermGradient, over_panels},
 };
 use faer::c64;
@@ -45,9 +45,9 @@ impl Term for PanelWidth {
                 let pull = share * slope / (self.minimum * along.norm());
                 let by_arm = I * along * pull;
                 let by_along = -(I * arm + along * (distance / along.norm())) * pull;
-                add(&mut gradient[corner], by_arm);
-                add(&mut gradient[(edge + 1) % 4], by_along);
-                add(&mut gradient[edge], -by_arm - by_along);
+                gradient[corner] += by_arm;
+                gradient[(edge + 1) % 4] += by_along;
+                gradient[edge] += -by_arm - by_along;
             }
         })
     }
