@@ -14,7 +14,6 @@ mod own_data;
 mod power_loss;
 mod regenerated;
 mod run_page;
-mod scale;
 mod scripted_slurm;
 mod slurm;
 mod static_page;

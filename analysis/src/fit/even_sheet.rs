@@ -287,14 +287,11 @@ mod tests {
         let is_closed = |[i, j]: [i32; 2]| {
             near.get((i + 30) as usize).is_some_and(|row| row.get((j + 30) as usize) == Some(&true))
         };
-        let [mut common, mut both] = [0.0; 2];
-        for point in side.clone().flat_map(|i| side.clone().map(move |j| [i, j])) {
-            let inside = drawing.contains(at(point));
-            let seen = around(point).all(is_closed);
-            common += f64::from(u8::from(inside && seen));
-            both += f64::from(u8::from(inside || seen));
-        }
-        common / both
+        let points = side.clone().flat_map(|i| side.clone().map(move |j| [i, j]));
+        let found = points.map(|it| [drawing.contains(at(it)), around(it).all(is_closed)]);
+        let found: Vec<[bool; 2]> = found.collect();
+        let count = |of: fn(&&[bool; 2]) -> bool| found.iter().filter(of).count() as f64;
+        count(|it| it[0] && it[1]) / count(|it| it[0] || it[1])
     }
 
     #[test]

@@ -229,17 +229,14 @@ mod tests {
         close(simple.area(), 100.0);
     }
 
-    /// Squares of 9.6 mm, 10 mm apart.
-    fn panels(columns: i32) -> Vec<Contour> {
-        let places = (0..columns).flat_map(|i| (0..3).map(move |j| [f64::from(i), f64::from(j)]));
-        let at = |[x, y]: [f64; 2]| {
-            square(0.0, 9.6).iter().map(|p| [p[0] + 10.0 * x, p[1] + 10.0 * y]).collect()
-        };
-        places.map(at).collect()
-    }
-
     #[test]
     fn panels_with_narrow_gaps_are_seen_as_one() {
+        let panel =
+            |[x, y]: [f64; 2]| square(0.0, 9.6).iter().map(|p| [p[0] + x, p[1] + y]).collect();
+        let panels = |columns: i32| -> Vec<Contour> {
+            let places = (0..columns).flat_map(|i| (0..3).map(move |j| [i, j]));
+            places.map(|at| panel(at.map(|k| 10.0 * f64::from(k)))).collect()
+        };
         let drawing = Region::union_of(vec![square(0.0, 29.6)]);
         assert!(seen(panels(3), &drawing) > 0.9999);
         assert!((seen(panels(2), &drawing) - 19.6 / 29.6).abs() < 1e-3);
