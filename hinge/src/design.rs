@@ -125,13 +125,17 @@ impl HingeDesign {
 
     /// Rejects a hinge of a sheet that cannot be cut; the error names the violated inequality.
     pub fn validate(&self) -> Result<(), InvalidDesign> {
-        self.validate_coupon()?;
-        self.exceeds_radius(MIN_WINDOW)
+        self.validate_window(MIN_WINDOW)
     }
 
     /// Rejects a coupon that cannot be cut. Its grips may be closer to the ligament than the other
     /// panels of a sheet.
     pub fn validate_coupon(&self) -> Result<(), InvalidDesign> {
+        self.validate_window(1.0 + 2.0 * self.fillet_ratio)
+    }
+
+    /// Rejects a design that cannot be cut, or whose window is no larger than `minimum` w_lig.
+    fn validate_window(&self, minimum: f64) -> Result<(), InvalidDesign> {
         let Self { w_lig, alpha, fillet_ratio, kerf, r_win } = *self;
         let named = ["w_lig", "alpha", "fillet_ratio", "kerf", "r_win"];
         let values = [w_lig, alpha, fillet_ratio, kerf, r_win];
@@ -157,12 +161,7 @@ impl HingeDesign {
         if kerf <= 0.0 || kerf >= limit {
             return Err(InvalidDesign::Kerf { kerf, limit });
         }
-        self.exceeds_radius(1.0 + 2.0 * fillet_ratio)
-    }
-
-    /// An error unless the radius of the window exceeds `minimum` ligament widths.
-    fn exceeds_radius(&self, minimum: f64) -> Result<(), InvalidDesign> {
-        let (r_win, limit) = (self.r_win, minimum * self.w_lig);
+        let limit = minimum * w_lig;
         if r_win <= limit {
             refuse!("r_win = {r_win} mm violates r_win > {minimum} w_lig = {limit} mm");
         }

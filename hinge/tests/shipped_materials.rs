@@ -21,7 +21,7 @@ fn every_shipped_material_is_valid_and_those_of_table_2_agree_with_it() {
         let path = entry.unwrap().path();
         let material = SheetMaterial::load(&path).unwrap();
         assert_eq!(Some(material.name.as_str()), path.file_stem().unwrap().to_str());
-        match TABLE_2.iter().find(|row| row.0 == material.name) {
+        match TABLE_2.iter().find(|row| material.name.starts_with(row.0)) {
             Some(row) => {
                 let found = (material.young, material.density_kg_m3, material.thickness);
                 assert_eq!(found, (row.1, row.2, row.3), "{}", material.name);
@@ -32,5 +32,5 @@ fn every_shipped_material_is_valid_and_those_of_table_2_agree_with_it() {
         let [_, last] = material.plastic[material.plastic.len() - 1];
         assert!(last <= material.fracture_strain, "{}", material.name);
     }
-    assert_eq!(read, TABLE_2.len());
+    assert_eq!(read, TABLE_2.len() + 1);
 }

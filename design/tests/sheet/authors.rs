@@ -12,8 +12,8 @@
 
 use crate::prelude::*;
 
-/// Width and height of a panel (mm).
-const PITCH: [f64; 2] = [406.4, 812.8];
+/// Width of a panel (mm).
+const WIDTH: f64 = 406.4;
 /// `k_stretch`, `k_shear` (N/mm) and `k_rot` (N mm/rad).
 const STRETCH: f64 = 238.1;
 const SHEAR: f64 = 127.4;
@@ -28,8 +28,7 @@ fn sheet() -> Sheet {
     let grid = Grid { m: 3, n: 3 };
     let mut coordinates = PatternCoordinates::uniform(grid);
     coordinates.z.fill((0.45_f64 / 0.55).ln());
-    let [width, height] = PITCH.map(|side| 3.0 * side);
-    cut(grid, Outline::rectangle(width, height), &coordinates, 18.0, AT_CORNER)
+    cut(grid, Outline::rectangle(1219.2, 2438.4), &coordinates, 18.0, AT_CORNER)
 }
 
 /// The sheet held and pulled at the mean of the corners of its panels.
@@ -86,7 +85,7 @@ fn opened(sheet: &Sheet, law: &dyn HingeLaw, force: f64) -> (Vec<f64>, [f64; 3])
     let path = path(sheet, law, &supports, &loads, 6);
     let end = &path[5].configuration;
     let openings = hinge_deformations(sheet, end).into_iter().map(|it| it.theta.to_degrees());
-    (openings.collect(), [6, 7, 8].map(|panel| end[panel][1] / PITCH[0]))
+    (openings.collect(), [6, 7, 8].map(|panel| end[panel][1] / WIDTH))
 }
 
 fn mean(openings: &[f64]) -> f64 {
