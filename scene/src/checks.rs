@@ -55,7 +55,7 @@ pub(super) fn config(scene: &SceneConfig, topology: &Topology) -> Result<(), Fau
     attachments(scene, topology)?;
     let (key, width) = ("objective.min_panel_width", scene.objective.min_panel_width);
     let side = scene.sheet.mean_panel_area().sqrt();
-    Ok(within(key, width, [0.0, side / 3.0], "mm")?)
+    within(key, width, [0.0, side / 3.0], "mm")
 }
 
 /// An error if the level reads a file that the scene does not name.

@@ -84,7 +84,7 @@ pub(crate) fn write(
         .map_err(|error| malformed(&error))?;
     let mut bytes = blake3::hash(&body).as_bytes().to_vec();
     bytes.extend(body);
-    Ok(support::whole_file::write(path, &bytes).map_err(unwritten(path))?)
+    support::whole_file::write(path, &bytes).map_err(unwritten(path))
 }
 
 impl State {

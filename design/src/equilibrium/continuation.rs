@@ -354,12 +354,11 @@ impl Branch<'_> {
 
     /// Whether a corrected position is stable. If the tangent near it is not, its own decides.
     fn is_stable(&mut self, corrected: &mut Corrected) -> bool {
-        if !corrected.factor.is_stable() {
-            if let Some(state) = self.state_at(&corrected.position, Order::Tangent)
-                && let Some(factor) = self.factorised(&state).factor
-            {
-                *corrected = Corrected { error: corrected.error, ..self.exact(state, factor) };
-            }
+        if !corrected.factor.is_stable()
+            && let Some(state) = self.state_at(&corrected.position, Order::Tangent)
+            && let Some(factor) = self.factorised(&state).factor
+        {
+            *corrected = Corrected { error: corrected.error, ..self.exact(state, factor) };
         }
         corrected.factor.is_stable()
     }
