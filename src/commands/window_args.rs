@@ -45,7 +45,9 @@ impl WindowArgs {
             self.alpha_deg.to_degrees()
         );
         if let Err(error) = design.validate() {
-            eprintln!("note: {error}: a coupon between grips, not a hinge of a sheet");
+            eprintln!(
+                "note: {error}: a coupon between grips, not a hinge of a sheet; close grips need the mesh tier `paper`"
+            );
         }
         Ok(design)
     }
