@@ -1,4 +1,4 @@
-//! Errors that no caller tells from another, for people to read, and errors of files.
+//! Errors that no caller distinguishes, for people to read, and errors of files.
 
 use std::fmt::Display;
 use std::io;

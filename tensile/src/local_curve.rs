@@ -91,8 +91,8 @@ pub(super) struct ColdDrawing {
 }
 
 impl ColdDrawing {
-    /// From the end of the measured curve to the natural draw ratio `ratio` under the nominal
-    /// stress `plateau` (MPa). `None` if the ratio is not beyond the upper yield.
+    /// The curve between the end of the measured one and the natural draw ratio `ratio` under the
+    /// nominal stress `plateau` (MPa). `None` if the ratio is not beyond the upper yield.
     pub(crate) fn new(from: Point, plateau: f64, ratio: f64, young: f64) -> Option<Self> {
         let [sigma, plastic] = from;
         let stress = ratio * plateau;

@@ -7,8 +7,8 @@
 //! * an ideal corner is a bond of zero length, which has no direction. Their program takes x for
 //!   it, at all hinges: `k_stretch` acts along x and `k_shear` along y, rotated by the mean frame.
 //!
-//! With both, all of their figures are found to the last digit; without, openings are up to 3.5 deg
-//! smaller.
+//! These two choices give all of their figures to the last digit. Our reading of the paper gives
+//! openings up to 3.5 deg smaller.
 
 use crate::prelude::*;
 

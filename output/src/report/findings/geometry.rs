@@ -75,7 +75,7 @@ pub(super) const RULES: [Rule; 8] = [
             "a larger target, or more loads that open the cuts",
         ],
         |of| {
-            // Panels cannot lie over each other, whatever the hinge law. On the way the edges of closed cuts,
+            // Panels cannot lie over each other, for any hinge law. On the way the edges of closed cuts,
             // which are softer in the model than in the sheet, may let them by a little.
             let DeployedDesign { deployment, hinges, .. } = of;
             let covered = |step: &LoadStep| overlap(&deployment.sheet, &step.configuration);
