@@ -24,11 +24,11 @@ use analysis::{
     fit::opening::{damage_of_turn, safe_opening},
     material_check::{Intended, MaterialCheck},
 };
-use anyhow::{Context, Result, bail, ensure};
+use anyhow::{Result, bail, ensure};
 use hinge::{Regime, SheetMaterial};
-use scene::{Posture, Scene, Stock, rounded};
+use scene::{Posture, Scene, Stock, rounded, run_inputs::SCENE_FILE};
 use std::path::{Path, PathBuf};
-use support::{text_file, unread};
+use support::{text_file, toml_file, unread};
 use surrogate::{Card, Surrogate};
 use toml_edit::{Array, ArrayOfTables, DocumentMut};
 
@@ -74,7 +74,7 @@ pub const WEIGHTS: [&str; 6] = [
 ];
 
 impl NewProject {
-    /// Writes the files of the project; returns the text of its README.
+    /// Writes the files of the project, its scene last; returns the text of its README.
     pub fn create(&self) -> Result<String> {
         ensure!(
             !self.folder.exists(),
@@ -128,48 +128,50 @@ impl NewProject {
         let campaign = campaign(&name, solved, regime)?;
 
         let template = Template::of(regime);
-        let readme = |scene: Option<&Scene>| {
-            let posture = scene.and_then(|scene| scene.config.posture);
-            let alone =
-                regime == Regime::Plate && posture.is_none_or(|it| it.kind == Posture::Hanging);
-            let why = [template.why, if alone { ALONE } else { "" }].concat();
-            readme(&self.folder, &why, regime, trained, WHOLE_BUILD)
-        };
         output_file::create_folder(&self.folder)?;
-        for (file, contents) in [
-            ("material.toml", &*text),
-            ("campaign.toml", &campaign),
-            (TRAINING, template.training),
-            ("scene.toml", &scene),
-            (README, &readme(None)),
-        ] {
-            output_file::write(&self.folder.join(file), contents)?;
+        let write = |file: &str, contents: &str| {
+            output_file::write(&self.folder.join(file), contents)
+        };
+        write("material.toml", &text)?;
+        write("campaign.toml", &campaign)?;
+        write(TRAINING, template.training)?;
+        let (mut expected, mut hangs) = (String::new(), true);
+        if trained {
+            // A refused service or drawing leaves the name of the folder free.
+            let discard = |_: &_| drop(std::fs::remove_dir_all(&self.folder));
+            (scene, expected, hangs) = self.finished(scene).inspect_err(discard)?;
         }
-        if !trained {
-            return Ok(readme(None));
-        }
-        let scene_file = self.folder.join("scene.toml");
-        let mut first = Self::checked_scene(&scene_file)?;
-        // A refused service or drawing leaves the name of the folder free.
-        let discard = |_: &_| drop(std::fs::remove_dir_all(&self.folder));
+        let alone = if hangs && regime == Regime::Plate { ALONE } else { "" };
+        let why = [template.why, alone].concat();
+        let readme = readme(&self.folder, &why, regime, trained, WHOLE_BUILD);
+        write(README, &readme)?;
+        // An interrupted command leaves no scene that could be designed.
+        write(SCENE_FILE, &scene)?;
+        Ok([readme, expected].join("\n").trim_end().to_owned())
+    }
+
+    /// The text of the scene for the service and the drawing, what is expected of its sheet, and
+    /// whether it hangs.
+    fn finished(&self, mut text: String) -> Result<(String, String, bool)> {
+        let file = self.folder.join(SCENE_FILE);
+        let read = |text: &str| Scene::new(toml_file::parse(text, &file)?, &file);
+        let mut scene = read(&text)?;
+        let mut expected = String::new();
         if let Some(service) = &self.service {
-            let mut config = first.config.clone();
-            for_service(&mut config, service, sheet.thickness).inspect_err(discard)?;
-            scene = format!(
+            let mut config = scene.config.clone();
+            for_service(&mut config, service, scene.material.thickness)?;
+            text = format!(
                 "# A sheet for {service}, written by `kirigami init --for`.\n\n{}",
                 config.to_toml()?
             );
-            output_file::write(&scene_file, &scene)?;
-            first = Self::checked_scene(&scene_file)?;
+            scene = scene.changed(config)?;
         }
-        if self.target.is_none() {
-            return Ok(readme(None));
+        if self.target.is_some() {
+            (text, expected) = fitted_text(&scene, &text, self.anyway)?;
+            scene = read(&text)?;
         }
-        let (text, expected) = fitted_text(&first, &scene, self.anyway).inspect_err(discard)?;
-        output_file::write(&scene_file, &text)?;
-        let readme = readme(Some(&Self::checked_scene(&scene_file)?));
-        output_file::write(&self.folder.join(README), &readme)?;
-        Ok(format!("{readme}\n{expected}"))
+        let hangs = scene.config.posture.is_none_or(|it| it.kind == Posture::Hanging);
+        Ok((text, expected, hangs))
     }
 
     /// The file of the material that is named, or else the usual one.
@@ -179,15 +181,6 @@ impl NewProject {
             (None, Some(thickness)) if Regime::usual(thickness) == Regime::Film => FILM.into(),
             _ => PLATE.into(),
         }
-    }
-
-    /// The scene that was written; an error if it cannot be designed as it is.
-    fn checked_scene(path: &Path) -> Result<Scene> {
-        let refused = || {
-            let path = path.display();
-            format!("{path} is written, but needs a change before it runs")
-        };
-        Scene::read(path).with_context(refused)
     }
 
     /// The weights that are for the material. Weights that are named must be.
@@ -297,7 +290,7 @@ pub fn campaign(name: &str, thickness: f64, regime: Regime) -> Result<String> {
 fn readme(folder: &Path, why: &str, regime: Regime, trained: bool, whole_build: bool) -> String {
     let path = |name: &str| shell_word(&folder.join(name));
     let (campaign, scene, material) =
-        (path("campaign.toml"), path("scene.toml"), path("material.toml"));
+        (path("campaign.toml"), path(SCENE_FILE), path("material.toml"));
     let (jobs, database) = (path("campaign"), path("hinges.parquet"));
     let (weights, training) = (path("weights.safetensors"), path(TRAINING));
     let (learned, learned_weights) = (path("learned"), path("learned/weights.safetensors"));

@@ -22,7 +22,6 @@ use support::{regular_file, text_file, unread};
 /// The first line of a scene that the studio writes. It changes no other scene.
 const HEAD: &str =
     "# Written by `kirigami studio`, which replaces it when the sheet is changed there.\n";
-const SCENE: &str = "scene.toml";
 
 /// The folder of a sheet.
 pub struct Project {
@@ -34,7 +33,7 @@ impl Project {
     /// Opens a scene or a run; a copy, in a new folder below `projects`, unless the studio wrote
     /// the scene.
     pub fn open(path: &Path, projects: &Path) -> Result<(Self, Scene)> {
-        let file = match path.join(SCENE) {
+        let file = match path.join(SCENE_FILE) {
             own if is_own(&own) => own,
             _ => scene_file(path)?,
         };
@@ -100,7 +99,7 @@ impl Project {
 
     /// The scene of the project.
     pub fn scene_file(&self) -> PathBuf {
-        self.folder.join(SCENE)
+        self.folder.join(SCENE_FILE)
     }
 
     /// Checks and writes the first scene.

@@ -1,5 +1,5 @@
 //! CalculiX with the generated decks, compared with closed-form solutions: the bar, the cantilever,
-//! the plate strip, and rigid motions of a whole window.
+//! the plate strip, the elastica, and rigid motions of a whole window.
 
 use crate::common::{design, film, problem, rows, solved};
 use fe_driver::{DeformationPath, StepControl, WindowModel, deck};
@@ -138,35 +138,48 @@ fn a_bar_in_tension_follows_the_tabulated_curve() {
     assert!((last / expected - 1.0).abs() < 0.025, "{last} {expected}");
 }
 
-/// Reference: beam theory, P = 3 E I delta / L^3, and thin-plate theory for a strip without lateral
-/// contraction, where E is replaced by E / (1 - nu^2). The strip has two layers of bricks and is 40
-/// times as long as thick.
+/// Reference: beam theory, P = 3 E I delta / L^3; thin-plate theory for a strip without lateral
+/// contraction, where E is replaced by E / (1 - nu^2); and the elastica, whose tip moves by
+/// 0.493457 L and 0.713792 L under P = 2 and 5 E I / L^2 (Bisshopp and Drucker 1945). The strip has
+/// two layers of bricks and is 40 times as long as thick.
 #[test]
-fn a_cantilever_and_a_plate_strip_bend_as_theory_says() {
+fn a_cantilever_a_plate_strip_and_an_elastica_bend_as_theory_says() {
     let film = film();
-    let (length, breadth, thickness, delta) = (20.0, 0.1, 0.5, 0.1);
-    let strip = Bricks::new([10, 1, 2], [length, breadth, thickness]);
-    let stiffness = |young: f64| 3.0 * young * breadth * thickness.powi(3) / 12.0;
+    let (length, breadth, thickness) = (20.0, 0.1, 0.5);
+    let strip = Bricks::new([20, 1, 2], [length, breadth, thickness]);
     let plate = film.young / (1.0 - film.poisson.powi(2));
-    // The clamp fixes the slope and the middle plane; the thickness may change.
-    let is_held = |p: &[f64; 3]| p[0] == 0.0 && (p[2] - 0.5 * thickness).abs() < 1e-9;
-    let mut clamp = "FACE0,1,1,0.\n".to_owned();
-    for (i, _) in strip.nodes.iter().enumerate().filter(|(_, p)| is_held(p)) {
-        writeln!(clamp, "{},3,3,0.", i + 1).unwrap();
-    }
-    for (held, young) in [("", film.young), ("NALL,2,2,0.\n", plate)] {
+    // The clamp fixes the slope and the middle plane; the thickness may change. The tip may rotate.
+    let middle = |x: f64| {
+        let places = strip.nodes.iter().enumerate();
+        let middle = places.filter(move |(_, p)| p[0] == x && (p[2] - 0.5 * thickness).abs() < 1e-9);
+        middle.map(|(i, _)| format!("{},\n", i + 1)).collect::<String>()
+    };
+    let deck = format!(
+        "{}*NSET,NSET=CLAMP\n{}*NSET,NSET=TIP\n{}*MATERIAL,NAME=M\n*ELASTIC\n{},{}\n\
+         *SOLID SECTION,ELSET=EALL,MATERIAL=M\n",
+        strip.deck(),
+        middle(0.0),
+        middle(length),
+        film.young,
+        film.poisson
+    );
+    for (held, step, young, delta, load) in [
+        ("", "*STEP\n*STATIC", film.young, 0.005, 0.015),
+        ("NALL,2,2,0.\n", "*STEP\n*STATIC", plate, 0.005, 0.015),
+        ("", "*STEP,NLGEOM\n*STATIC\n0.1,1.", film.young, 0.493_457, 2.0),
+        ("", "*STEP,NLGEOM\n*STATIC\n0.1,1.", film.young, 0.713_792, 5.0),
+    ] {
         let dat = solved(&format!(
-            "{}*MATERIAL,NAME=M\n*ELASTIC\n{},{}\n*SOLID SECTION,ELSET=EALL,MATERIAL=M\n\
-             *STEP\n*STATIC\n*BOUNDARY\n{clamp}FACE2,2,2,0.\n\
-             {held}FACE1,3,3,{delta}\n*NODE PRINT,NSET=FACE1\nRF\n*END STEP\n",
-            strip.deck(),
-            film.young,
-            film.poisson
+            "{deck}{step}\n*BOUNDARY\nFACE0,1,1,0.\nCLAMP,3,3,0.\nFACE2,2,2,0.\n\
+             {held}TIP,3,3,{}\n*NODE PRINT,NSET=TIP\nRF\n*END STEP\n",
+            delta * length
         ));
-        let force: f64 = rows(&dat, 4).iter().map(|row| row[3]).sum();
-        let expected = stiffness(young) * delta / length.powi(3);
+        let (_, last) = dat.rsplit_once("forces (fx,fy,fz)").unwrap();
+        let force: f64 = rows(last, 4).iter().map(|row| row[3]).sum();
+        let inertia = breadth * thickness.powi(3) / 12.0;
+        let expected = load * young * inertia / length.powi(2);
         let error = (force / expected - 1.0).abs();
-        assert!(error < 0.01, "{held}: {force} {expected}");
+        assert!(error < 0.01, "{held}{delta}: {force} {expected}");
     }
 }
 
