@@ -129,9 +129,8 @@ impl NewProject {
 
         let template = Template::of(regime);
         output_file::create_folder(&self.folder)?;
-        let write = |file: &str, contents: &str| {
-            output_file::write(&self.folder.join(file), contents)
-        };
+        let write =
+            |file: &str, contents: &str| output_file::write(&self.folder.join(file), contents);
         write("material.toml", &text)?;
         write("campaign.toml", &campaign)?;
         write(TRAINING, template.training)?;

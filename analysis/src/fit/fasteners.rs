@@ -45,13 +45,23 @@ pub struct Held {
 
 impl Held {
     /// How the fasteners of a scene hold its sheet, whose panels have their middles at `flat` and,
-    /// opened evenly, at `even` (mm); `None` without an equilibrium.
-    pub(super) fn of(scene: &Scene, flat: &[[f64; 2]], even: &[[f64; 2]]) -> Option<Self> {
-        let problem = scene.problem().ok()?;
-        let response = problem.response(&scene.start(), None).ok()?;
-        let panels = &response.deployment.sheet.panels;
+    /// opened evenly, at `even` (mm), turned by `turns` (rad); `None` without an equilibrium.
+    pub(super) fn of(
+        scene: &Scene,
+        flat: &[[f64; 2]],
+        even: &[[f64; 2]],
+        turns: &[f64],
+    ) -> Option<Self> {
+        let (problem, start) = (scene.problem().ok()?, scene.start());
+        let (_, sheet) = problem.cut(&start).ok()?;
+        // From the middle to the reference point of a panel.
+        let opened = sheet.panels.iter().zip(turns).enumerate().map(|(k, (panel, turn))| {
+            let moved = deployed(panel, [0.0, 0.0, *turn], flat[k]);
+            [even[k][0] - moved[0], even[k][1] - moved[1], *turn]
+        });
+        let response = problem.draft_near(&start, &opened.collect::<Vec<_>>()).ok()?;
         let end = &response.state().configuration;
-        let off = (panels.iter().enumerate())
+        let off = (sheet.panels.iter().enumerate())
             .map(|(k, panel)| distance(deployed(panel, end[k], flat[k]), even[k]));
         let [low, high] = bounds(even.iter().copied());
         let side = f64::max(high[0] - low[0], high[1] - low[1]);
@@ -66,7 +76,7 @@ impl Held {
         };
         // The path costs more than its end.
         if held.suffices() {
-            let deployment = problem.deploy(&scene.start()).ok()?;
+            let deployment = problem.deploy(&start).ok()?;
             held.margin = Stability::new(scene, &problem, &deployment).map(|found| found.margin);
             held.leaves_domain = deployment.share_inside() < 1.0;
         }
@@ -80,7 +90,8 @@ impl Held {
     }
 }
 
-/// Panels far from each other along the sheet, beginning with the ends of its longest way.
+/// Panels far from each other along the sheet, in the order in which they are fastened: next is the
+/// one nearest to those before it, whose hole has the shortest way.
 pub(super) fn fastened(topology: &Topology, count: usize) -> Vec<usize> {
     let mut neighbours = vec![Vec::new(); topology.panel_count()];
     for site in &topology.sites {
@@ -120,5 +131,19 @@ pub(super) fn fastened(topology: &Topology, count: usize) -> Vec<usize> {
     while chosen.len() < count.min(panels.len()) {
         chosen.push(farthest(&chosen));
     }
-    chosen
+    let apart = |one: usize, other: usize| {
+        let [from, to] = [one, other].map(|panel| topology.places[panel]);
+        from[0].abs_diff(to[0]).pow(2) + from[1].abs_diff(to[1]).pow(2)
+    };
+    let mut order: Vec<usize> = Vec::new();
+    while !chosen.is_empty() {
+        let of = |at: &usize| {
+            let others = if order.is_empty() { &chosen } else { &order };
+            let apart = others.iter().map(|other| apart(chosen[*at], *other));
+            if order.is_empty() { apart.max() } else { apart.min() }
+        };
+        let next = (0..chosen.len()).max_by_key(of).unwrap_or_default();
+        order.push(chosen.remove(next));
+    }
+    order
 }

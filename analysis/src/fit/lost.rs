@@ -62,8 +62,9 @@ fn width(region: &Region) -> f64 {
 /// The factor by which a sheet has more panels along each side that loses nothing; `None` if none of
 /// those that are tried does.
 pub(super) fn kept_by(target: &Region, size: f64, limits: Limits) -> Option<f64> {
+    let limits = Limits { stock: [f64::INFINITY; 2], ..limits };
     LARGER.into_iter().find(|factor| {
-        let larger = EvenSheet::new(target, factor * size, limits, QUICK);
+        let larger = EvenSheet::new(target, &[factor * size], limits, QUICK);
         larger.is_some_and(|sheet| lost(&sheet).is_empty())
     })
 }

@@ -2,7 +2,7 @@
 //! fastened at the places of its opening.
 
 use crate::fit::even_pattern::Opening;
-use crate::fit::even_sheet::{EvenSheet, THOROUGH};
+use crate::fit::even_sheet::{EvenSheet, THOROUGH, growth};
 use crate::fit::fasteners::{COUNTS, HOLE, Held, fastened};
 use crate::fit::lost::{Lost, kept_by, lost};
 use crate::fit::opening::{free_axial_opening, safe_opening};
@@ -33,10 +33,10 @@ const WIDTH: f64 = 2.0;
 /// Smallest distance of panels that do not hang together, over the side of a panel: more than what
 /// an uneven opening moves them.
 const GAP: f64 = 0.05;
-/// Sizes that are tried until a sheet fills its stock.
-const SIZES: usize = 6;
-/// Part of the stock that a sheet fills at least.
-const FILLED: f64 = 0.95;
+/// Sizes that are compared, over the size at which the drawing fills the stock, and over those if
+/// none of them fits.
+const SIZES: [f64; 6] = [1.04, 1.0, 0.97, 0.94, 0.91, 0.88];
+const LARGEST: [f64; 3] = [1.0, 0.82, 0.68];
 /// Steps of a search: an even pattern needs none (docs/TRIED.md).
 const STEPS: usize = 0;
 
@@ -84,7 +84,9 @@ pub fn fitted(scene: &Scene) -> Result<FittedScene, FitError> {
     let angle = opening(scene);
     let process = scene.config.process;
     let side = SIDE * process.r_win;
+    let space = Region::union_of(vec![scene.config.sheet.outline().corners.to_vec()]);
     let limits = Limits {
+        stock: space.extent().map(|length| length / side),
         opening: Opening { angle, set_back: set_back(scene, angle) / side },
         // The window is about the tip of the cut.
         window: (process.r_win + width(scene) + 0.5 * process.slit_width) / side + TOLERANCE,
@@ -93,9 +95,7 @@ pub fn fitted(scene: &Scene) -> Result<FittedScene, FitError> {
         slit: process.slit_width / side,
     };
     let target = scene.target.region();
-    let space = Region::union_of(vec![scene.config.sheet.outline().corners.to_vec()]);
-    let stock = space.extent().map(|length| length / side);
-    let sheet = largest(&target, stock, limits).ok_or(FitError::Narrow { side })?;
+    let sheet = largest(&target, limits).ok_or(FitError::Narrow { side })?;
     let topology = sheet.topology();
     let lost = lost(&sheet);
     let size = sheet.size(&target);
@@ -139,35 +139,12 @@ fn set_back(scene: &Scene, angle: f64) -> f64 {
     })
 }
 
-/// The largest sheet that fits into a stock that lies or stands; lengths in sides of a panel. The
-/// drawing stands upright.
-fn largest(target: &Region, stock: [f64; 2], limits: Limits) -> Option<EvenSheet> {
-    let mut size = growth(target.extent(), stock) * target.longer_side();
-    let mut best: Option<EvenSheet> = None;
-    for _ in 0..SIZES {
-        let sheet = EvenSheet::new(target, size, limits, THOROUGH)?;
-        let upright = c64::cis(-sheet.place.rotation());
-        let flat = Region::union_of(sheet.opened(0.0)).map(|at| point(upright * complex(at)));
-        let factor = growth(flat.extent(), stock);
-        size *= 0.995 * factor;
-        if factor < 1.0 {
-            continue;
-        }
-        let is_larger = |best: &EvenSheet| sheet.place.scale() > best.place.scale();
-        if best.as_ref().is_none_or(is_larger) {
-            best = Some(sheet);
-        }
-        if factor * FILLED < 1.0 {
-            break;
-        }
-    }
-    best
-}
-
-/// The factor by which a sheet of some width and height may grow in a stock that lies or stands.
-fn growth([width, height]: [f64; 2], [one, other]: [f64; 2]) -> f64 {
-    let in_stock = |x: f64, y: f64| f64::min(x / width, y / height);
-    f64::max(in_stock(one, other), in_stock(other, one))
+/// The sheet of a drawing that is as large as its stock allows. What is seen of the drawing comes
+/// before the last percents of its size.
+fn largest(target: &Region, limits: Limits) -> Option<EvenSheet> {
+    let size = growth(target.extent(), limits.stock) * target.longer_side();
+    let tried = LARGEST.into_iter().map(|part| SIZES.map(|factor| factor * part * size));
+    tried.filter_map(|sizes| EvenSheet::new(target, &sizes, limits, THOROUGH)).next()
 }
 
 /// The keys of the scene with as few fasteners as suffice, and how they hold the sheet; if none
@@ -180,12 +157,15 @@ fn fasten(
 ) -> (SceneConfig, Option<Held>) {
     let laid = LaidSheet::new(sheet, topology, side);
     let [flat, even] = [0.0, laid.opened].map(|opened| laid.middles(opened));
+    let turns = sheet.turns(topology);
     let mut best: Option<(SceneConfig, Held)> = None;
     for count in COUNTS {
         let config = laid.keys(scene, sheet, &fastened(topology, count));
         // A sheet that is refused is not balanced: what is seen of its target says more.
         let changed = scene.changed(config.clone()).ok();
-        let Some(held) = changed.and_then(|scene| Held::of(&scene, &flat, &even)) else { continue };
+        let Some(held) = changed.and_then(|scene| Held::of(&scene, &flat, &even, &turns)) else {
+            continue;
+        };
         let suffices = held.suffices();
         if suffices || best.as_ref().is_none_or(|(_, best)| held.off < best.off) {
             best = Some((config, held));

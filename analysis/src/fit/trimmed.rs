@@ -9,16 +9,15 @@ use super::even_pattern::{
     Cell, Opening, Pair, centre, corners, hinge, moved, neighbours, pairs, squares,
 };
 use design::geometry::plane::{complex, point};
+use design::geometry::polygon::{distance, distance_to_polygon};
 use design::geometry::region::{Contour, Corners, Region};
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::FRAC_PI_2;
 
-/// Openings at which a panel may not meet another one.
-const OPENINGS: u32 = 24;
 /// How far the squares are apart at most whose panels may meet.
 const NEAR: i32 = 5;
 /// Rows of missing squares that become parts of panels.
-const RINGS: usize = 2;
+pub(super) const RINGS: usize = 2;
 /// The smallest area of the drawing for which a missing square becomes a part.
 const LEAST_PART: f64 = 0.02;
 /// By how much the edges of a panel are simplified.
@@ -37,6 +36,8 @@ const ARC: u32 = 4;
 /// What bounds the panels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits {
+    /// Width and height of the stock.
+    pub stock: [f64; 2],
     /// The opening of every hinge.
     pub opening: Opening,
     /// How far a window reaches from its corner.
@@ -97,11 +98,13 @@ fn sector(cell: Cell, corner: Cell, limits: &Limits) -> Contour {
     arc.chain([corner]).collect()
 }
 
-/// The flat panels of the squares of `loops`, trimmed to an opened drawing.
+/// The flat panels of the squares of `loops`, trimmed to an opened drawing, so that none meets
+/// another one at any of some openings.
 pub(super) fn panels(
     drawing: &Region,
     loops: &BTreeSet<Cell>,
     limits: &Limits,
+    openings: u32,
 ) -> BTreeMap<Cell, Region> {
     let edge = Edge::new(drawing, loops, limits);
     let parts: BTreeMap<Cell, Region> = edge.parts();
@@ -124,7 +127,8 @@ pub(super) fn panels(
                 Some(panel) => panel.clone(),
                 None => Region::union_of(vec![corners(other)]),
             };
-            let taken = edge.passed(cell, part, of_other).offset(limits.gap, Corners::Round);
+            let taken =
+                edge.passed(cell, part, openings, of_other).offset(limits.gap, Corners::Round);
             let whole = square.union(&part.minus(&taken));
             let wide = square.union(&whole.opened(0.5 * limits.width).common(&whole));
             let panel = with_most_of(wide, &square);
@@ -254,22 +258,29 @@ impl<'a> Edge<'a> {
 
     /// What other panels pass through as a panel sees it, and the cuts along the windows of its
     /// hinges.
-    fn passed(&self, cell: Cell, part: &Region, of_other: impl Fn(Cell) -> Region) -> Region {
-        let [low, high] = part.bounds();
+    fn passed(
+        &self,
+        cell: Cell,
+        part: &Region,
+        openings: u32,
+        of_other: impl Fn(Cell) -> Region,
+    ) -> Region {
         let mut passed: Vec<Contour> =
             self.hinges_of(cell).map(|pair| self.slit(cell, pair)).collect();
         let is_near =
             |other: &&Cell| **other != cell && (0..2).all(|c| (other[c] - cell[c]).abs() <= NEAR);
         for other in self.squares.iter().filter(is_near) {
             let panel = of_other(*other);
-            for step in 0..=OPENINGS {
-                let opening = self.limits.opening.part(f64::from(step) / f64::from(OPENINGS));
+            let [from, to] = panel.bounds();
+            let middle = [0, 1].map(|c| 0.5 * (from[c] + to[c]));
+            let reach = distance(middle, to) + self.limits.gap;
+            for step in 0..=openings {
+                let opening = self.limits.opening.part(f64::from(step) / f64::from(openings));
                 let motion = opening.relative_motion(*other, cell);
-                let there = panel.map(|at| moved(motion, at));
-                let [from, to] = there.bounds();
-                if (0..2).all(|c| from[c] < high[c] && to[c] > low[c]) {
-                    passed
-                        .extend(there.polygons.into_iter().map(|mut contours| contours.remove(0)));
+                let there = moved(motion, middle);
+                if part.contours().any(|edge| distance_to_polygon(there, edge) < reach) {
+                    let outlines = panel.polygons.iter().map(|contours| contours[0].iter());
+                    passed.extend(outlines.map(|it| it.map(|at| moved(motion, *at)).collect()));
                 }
             }
         }

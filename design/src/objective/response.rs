@@ -149,6 +149,29 @@ impl DesignProblem {
         })
     }
 
+    /// A draft of the equilibrium of a design at full load next to a configuration; an error if
+    /// there is none.
+    pub fn draft_near(
+        &self,
+        design: &DesignVector,
+        configuration: &[Motion],
+    ) -> Result<Response, DesignError> {
+        self.responded(design, |solver, hinged| {
+            let mut start = configuration.to_vec();
+            for support in &solver.supports {
+                start[support.panel][support.dof.index()] = support.value;
+            }
+            let steps = vec![solver.full_load(hinged, start)];
+            let known = WarmStart { designs: hinged.sheet.designs(), steps };
+            (
+                vec![
+                    solver.full_load_near(hinged, &known).unwrap_or_else(|| known.steps[0].clone()),
+                ],
+                false,
+            )
+        })
+    }
+
     /// The response of a design whose configuration at full load is known.
     pub fn response_at(
         &self,

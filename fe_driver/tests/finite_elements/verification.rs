@@ -151,7 +151,8 @@ fn a_cantilever_a_plate_strip_and_an_elastica_bend_as_theory_says() {
     // The clamp fixes the slope and the middle plane; the thickness may change. The tip may rotate.
     let middle = |x: f64| {
         let places = strip.nodes.iter().enumerate();
-        let middle = places.filter(move |(_, p)| p[0] == x && (p[2] - 0.5 * thickness).abs() < 1e-9);
+        let middle =
+            places.filter(move |(_, p)| p[0] == x && (p[2] - 0.5 * thickness).abs() < 1e-9);
         middle.map(|(i, _)| format!("{},\n", i + 1)).collect::<String>()
     };
     let deck = format!(
