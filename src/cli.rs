@@ -1,7 +1,7 @@
 //! The command line: one subcommand per module of [`crate::commands`].
 
 use crate::commands::{
-    compare, completions, cut, design, doctor, export, init, inspect, levels, man, material, studio,
+    compare, completions, cut, design, doctor, export, init, inspect, levels, material, studio,
 };
 #[cfg(feature = "pipeline")]
 use crate::commands::{demo, pipeline};
@@ -52,7 +52,6 @@ enum Command {
     #[command(flatten)]
     Pipeline(pipeline::PipelineCommand),
     Completions(completions::CompletionsCommand),
-    Man(man::ManCommand),
 }
 
 impl Cli {
@@ -80,7 +79,6 @@ impl Cli {
             #[cfg(feature = "pipeline")]
             Command::Pipeline(command) => command.run(),
             Command::Completions(command) => command.run(Self::command()),
-            Command::Man(command) => command.run(Self::command()),
         }
     }
 }

@@ -37,7 +37,6 @@ pub mod init;
 
 pub mod inspect;
 pub mod levels;
-pub mod man;
 pub mod material;
 #[cfg(feature = "pipeline")]
 pub mod mesh;

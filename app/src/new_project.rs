@@ -28,7 +28,7 @@ use anyhow::{Result, bail, ensure};
 use hinge::{Regime, SheetMaterial};
 use scene::{Posture, Scene, Stock, rounded, run_inputs::SCENE_FILE};
 use std::path::{Path, PathBuf};
-use support::{text_file, toml_file, unread};
+use support::{at, text_file, toml_file, unread};
 use surrogate::{Card, Surrogate};
 use toml_edit::{Array, ArrayOfTables, DocumentMut};
 
@@ -154,7 +154,7 @@ impl NewProject {
     fn finished(&self, mut text: String) -> Result<(String, String, bool)> {
         let file = self.folder.join(SCENE_FILE);
         let read = |text: &str| Scene::new(toml_file::parse(text, &file)?, &file);
-        let mut scene = read(&text)?;
+        let mut scene = read(&text).map_err(at("no scene of this sheet can be designed"))?;
         let mut expected = String::new();
         if let Some(service) = &self.service {
             let mut config = scene.config.clone();

@@ -26,11 +26,7 @@ use std::{
     sync::{Arc, atomic::AtomicBool},
     time::{Duration, Instant},
 };
-use support::{
-    Fault, at, ensure, regular_file,
-    sealed_json::{self, SealError},
-    whole_file,
-};
+use support::{Fault, at, ensure, regular_file, sealed_json, whole_file};
 
 /// The folder of the coarse searches, in the folder of a run.
 pub const LEVELS: &str = "levels";
@@ -94,7 +90,7 @@ pub fn stored_design(path: &Path, scene: &Scene) -> Result<DesignVector, Fault> 
     Ok(design)
 }
 
-fn no_state(path: &Path, error: &SealError) -> Fault {
+fn no_state(path: &Path, error: &Fault) -> Fault {
     format!(
         "{} is neither the state of a run nor a design ({error}): give another file, or restart the \
          run",

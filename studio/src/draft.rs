@@ -70,7 +70,10 @@ pub(crate) fn draft(
     known: Option<&WarmStart>,
 ) -> Result<Deployment, DesignError> {
     let deployment = match problem.model.mechanics() {
-        Some(_) => problem.draft(design, known)?.deployment,
+        Some(_) => {
+            let drafted = problem.draft(design, known);
+            drafted.or_else(|_| problem.draft(design, None))?.deployment
+        }
         None => problem.deploy(design)?,
     };
     deployment.at_full_load()?;

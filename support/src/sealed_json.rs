@@ -1,35 +1,13 @@
 //! JSON files with damage detection: the key `checksum` contains the BLAKE3 hash of the other
 //! contents.
 
+use crate::{Fault, said};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 
 /// Name of the key.
 const CHECKSUM: &str = "checksum";
-
-/// Why sealed JSON cannot be read.
-#[derive(Debug, thiserror::Error)]
-pub enum SealError {
-    /// The text is not JSON, or not JSON of the expected type.
-    #[error(transparent)]
-    Json(#[from] serde_json::Error),
-    /// The key is missing in a file that this program writes with it.
-    #[error(
-        "the file has no checksum: a part of it was deleted, or it was not written by kirigami"
-    )]
-    Unsealed,
-    /// The contents have changed since they were written.
-    #[error(
-        "the file is damaged or was edited: it states the checksum {expected}, but its contents have {found}"
-    )]
-    Checksum {
-        /// Checksum in the file.
-        expected: String,
-        /// Checksum of the contents.
-        found: String,
-    },
-}
 
 /// The JSON of a value with its checksum, indented; an earlier checksum is replaced.
 pub fn to_vec(value: &impl Serialize) -> Result<Vec<u8>, serde_json::Error> {
@@ -45,31 +23,37 @@ pub fn to_vec(value: &impl Serialize) -> Result<Vec<u8>, serde_json::Error> {
 }
 
 /// The value in JSON text, after checking its checksum, which it must have.
-pub fn from_slice<T: DeserializeOwned>(text: &[u8]) -> Result<T, SealError> {
-    read(text)?.ok_or(SealError::Unsealed)
+pub fn from_slice<T: DeserializeOwned>(text: &[u8]) -> Result<T, Fault> {
+    read(text)?.ok_or_else(|| {
+        fault!(
+            "the file has no checksum: a part of it was deleted, or it was not written by kirigami"
+        )
+    })
 }
 
 /// The value in JSON text that people may write too, after checking its checksum if it has one.
-pub fn from_slice_by_hand<T: DeserializeOwned>(text: &[u8]) -> Result<T, SealError> {
+pub fn from_slice_by_hand<T: DeserializeOwned>(text: &[u8]) -> Result<T, Fault> {
     match read(text)? {
         Some(value) => Ok(value),
-        None => Ok(serde_json::from_slice(text)?),
+        None => serde_json::from_slice(text).map_err(said),
     }
 }
 
 /// The value in JSON text, after checking its checksum; `None` if it has none.
-fn read<T: DeserializeOwned>(text: &[u8]) -> Result<Option<T>, SealError> {
-    let mut value: Value = serde_json::from_slice(text)?;
+fn read<T: DeserializeOwned>(text: &[u8]) -> Result<Option<T>, Fault> {
+    let mut value: Value = serde_json::from_slice(text).map_err(said)?;
     let stated = value.as_object_mut().and_then(|keys| keys.shift_remove(CHECKSUM));
     let Some(expected) = stated else {
         return Ok(None);
     };
-    let (expected, found) = (expected.as_str().unwrap_or_default(), checksum(&value)?);
+    let (expected, found) =
+        (expected.as_str().unwrap_or_default(), checksum(&value).map_err(said)?);
     if expected != found {
-        let expected = expected.to_owned();
-        return Err(SealError::Checksum { expected, found });
+        refuse!(
+            "the file is damaged or was edited: it states the checksum {expected}, but its contents have {found}"
+        );
     }
-    Ok(Some(serde_json::from_value(value)?))
+    serde_json::from_value(value).map(Some).map_err(said)
 }
 
 fn checksum(value: &Value) -> Result<String, serde_json::Error> {
@@ -112,7 +96,7 @@ mod tests {
     fn only_a_file_written_by_hand_may_lack_its_checksum() {
         let text = serde_json::to_vec(&record()).unwrap();
         let error = from_slice::<Record>(&text).unwrap_err();
-        assert!(matches!(error, SealError::Unsealed), "{error}");
+        assert!(error.to_string().contains("no checksum"), "{error}");
         assert_eq!(from_slice_by_hand::<Record>(&text).unwrap(), record());
     }
 }

@@ -5,7 +5,7 @@ use super::even_pattern::{Cell, moved, neighbours, squares};
 use super::raster::Raster;
 use super::trimmed::{Limits, ON_EDGE, RINGS, loops, opened, panels};
 use design::geometry::plane::{complex, point};
-use design::geometry::polygon::{bounds, distance, distance_to_outline, distance_to_segment};
+use design::geometry::polygon::{bounds, distance_to_outline, distance_to_segment, size};
 use design::geometry::region::{Contour, Region, seen};
 use design::geometry::similarity::Similarity;
 use design::pattern::grid::Grid;
@@ -55,7 +55,7 @@ pub struct EvenSheet {
     /// The map from the drawing to the opened pattern.
     pub place: Similarity,
     /// The drawing there.
-    drawing: Region,
+    pub(super) drawing: Region,
     loops: BTreeSet<Cell>,
     panels: BTreeMap<Cell, Region>,
     /// Intersection over union of what one sees of the opened panels and the drawing.
@@ -63,15 +63,14 @@ pub struct EvenSheet {
 }
 
 impl EvenSheet {
-    /// The best sheet of a drawing whose longer side is one of `sizes` squares long when flat, of
-    /// `made` that are compared; `None` if none fits into its stock, and if the drawing is narrower
-    /// than two squares everywhere.
+    /// The best sheet of a drawing whose longer side is so many squares long when flat, as one of
+    /// `sizes`, the largest first, says, of `made` that are compared; `None` if none fits into its
+    /// stock, and if the drawing is narrower than two squares everywhere.
     pub fn new(drawing: &Region, sizes: &[f64], limits: Limits, made: usize) -> Option<Self> {
         let [low, high] = drawing.bounds();
         let by_size = limits.opening.pitch() / drawing.longer_side();
         let scales = sizes.iter().map(|size| size * by_size);
-        let tolerance = TOLERANCE / scales.clone().fold(0.0, f64::max);
-        let drawing = drawing.simplified(tolerance, |_| false);
+        let drawing = drawing.simplified(TOLERANCE / (sizes[0] * by_size), |_| false);
         let middle = [0, 1].map(|c| 0.5 * (low[c] + high[c]));
         let symmetric = mirror_axis(&drawing).and_then(|(angle, centroid)| {
             let turn = FRAC_PI_2 - angle;
@@ -93,24 +92,14 @@ impl EvenSheet {
         if value(&symmetric) + FOR_SYMMETRY >= value(&any) { symmetric } else { any }
     }
 
-    fn at(drawing: &Region, raster: &Raster, limits: Limits, place: Similarity) -> Option<Self> {
-        let drawing = drawing.map(|at| moved(place, at));
-        let inside = |at| raster.contains(point(place.back(complex(at))));
-        let loops = loops(drawing.bounds(), &limits, &inside);
-        let sheet = Self { limits, place, drawing, loops, panels: BTreeMap::new(), seen: 0.0 };
-        (!sheet.loops.is_empty()).then_some(sheet)
-    }
-
     /// How many points of the drawing are so near to the squares that panels may have them; `None`
     /// if the flat sheet does not fit into the stock with them.
     fn in_reach(&self, points: &[[f64; 2]]) -> Option<usize> {
         let mut owners: BTreeMap<Cell, Cell> =
-            squares(&self.loops).into_iter().map(|cell| (cell, cell)).collect();
+            squares(&self.loops).into_iter().map(|it| (it, it)).collect();
         for _ in 0..RINGS {
             for (cell, owner) in owners.clone() {
-                for next in neighbours(cell) {
-                    owners.entry(next).or_insert(owner);
-                }
+                neighbours(cell).into_iter().for_each(|at| _ = owners.entry(at).or_insert(owner));
             }
         }
         let opening = self.limits.opening;
@@ -120,7 +109,7 @@ impl EvenSheet {
             Some(point(opening.motion(*owner).back(complex(there))))
         });
         let flat: Contour = flat.collect();
-        (self.growth(&flat) >= 1.0).then_some(flat.len())
+        self.fits(&flat).then_some(flat.len())
     }
 
     fn with_panels(mut self, openings: u32) -> Self {
@@ -129,27 +118,16 @@ impl EvenSheet {
         self
     }
 
-    /// By how much a flat sheet with these points may grow in the stock.
-    fn growth<'a>(&self, flat: impl IntoIterator<Item = &'a [f64; 2]>) -> f64 {
+    /// Whether a flat sheet with these points fits into the stock.
+    fn fits(&self, flat: &[[f64; 2]]) -> bool {
         let upright = c64::cis(-self.place.rotation());
-        let turned = flat.into_iter().map(|at| point(upright * complex(*at)));
-        let [low, high] = bounds(turned);
-        growth([0, 1].map(|c| high[c] - low[c]), self.limits.stock)
-    }
-
-    /// Whether the flat panels fit into the stock.
-    fn fits(&self) -> bool {
-        self.growth(self.opened(0.0).iter().flatten()) >= 1.0
+        let turned = flat.iter().map(|at| point(upright * complex(*at)));
+        growth(size(bounds(turned)), self.limits.stock) >= 1.0
     }
 
     /// How many squares the longer side of a drawing is long when flat.
     pub(super) fn size(&self, drawing: &Region) -> f64 {
         self.place.scale() * drawing.longer_side() / self.limits.opening.pitch()
-    }
-
-    /// The drawing on the opened pattern.
-    pub(super) fn drawing(&self) -> &Region {
-        &self.drawing
     }
 
     /// The contours of the panels at a part of the opening.
@@ -168,14 +146,6 @@ impl EvenSheet {
         first[0] -= (first[0] + first[1]).rem_euclid(2);
         let count = |c: usize| (most(c) - first[c] + 1) as usize;
         (Grid { m: count(0), n: count(1) }, first)
-    }
-
-    /// By how much the panels turn when the pattern opens (rad).
-    pub(super) fn turns(&self, topology: &Topology) -> Vec<f64> {
-        let (_, first) = self.cells();
-        let cell = |place: &[usize; 2]| [0, 1].map(|c| place[c] as i32 + first[c]);
-        let turn = |place| self.limits.opening.motion(cell(place)).rotation();
-        topology.places.iter().map(turn).collect()
     }
 
     /// Its panels and hinges.
@@ -212,36 +182,19 @@ impl EvenSheet {
 /// Without corners next to each other, on a straight edge or at the tip of a line without width, but
 /// with all of the cell.
 fn distinct(mut boundary: Contour) -> Contour {
-    let is_of_cell = |at: [f64; 2]| at.iter().all(|x| *x == 0.0 || *x == 1.0);
-    if let Some(i) = boundary.iter().position(|at| is_of_cell(*at)) {
-        boundary.rotate_left(i);
-    }
-    boundary.dedup_by(|next, kept| {
-        let is_one = distance(*next, *kept) < APART;
-        if is_one && is_of_cell(*next) {
-            *kept = *next;
-        }
-        is_one
-    });
-    let first = boundary[0];
-    boundary.pop_if(|last| distance(*last, first) < APART);
-    let is_tip = |i: &usize| {
-        let [before, after] = [i + boundary.len() - 1, i + 1].map(|k| boundary[k % boundary.len()]);
-        let at = boundary[*i];
+    let is_idle = |boundary: &Contour, i: usize| {
+        let n = boundary.len();
+        let [before, at, after] = [i + n - 1, i, i + 1].map(|k| boundary[k % n]);
+        let is_of_cell = at.iter().all(|x| *x == 0.0 || *x == 1.0);
         let turns_back = distance_to_segment(after, before, at) < APART
             || distance_to_segment(before, at, after) < APART;
-        turns_back && !is_of_cell(at)
+        let is_straight = distance_to_segment(at, before, after) < ON_EDGE;
+        at == after || !is_of_cell && (turns_back || is_straight)
     };
-    if let Some(tip) = (0..boundary.len()).find(is_tip) {
-        boundary.remove(tip);
-        return distinct(boundary);
+    while let Some(i) = (0..boundary.len()).find(|i| is_idle(&boundary, *i)) {
+        boundary.remove(i);
     }
-    let turns = |i: &usize| {
-        let n = boundary.len();
-        let [before, at, after] = [i + n - 1, *i, i + 1].map(|k| boundary[k % n]);
-        is_of_cell(at) || distance_to_segment(at, before, after) > ON_EDGE
-    };
-    (0..boundary.len()).filter(turns).map(|i| boundary[i]).collect()
+    boundary
 }
 
 /// A coordinate in a cell; 0, without a sign, and 1 are on its edges.
@@ -272,7 +225,11 @@ fn best(
         [RASTER, COARSE].map(|step| Raster::new(drawing, step / places[0].scale()));
     let points: Vec<_> = coarse.points().collect();
     let at = |place| {
-        let sheet = EvenSheet::at(drawing, &raster, limits, place)?;
+        let drawing = drawing.map(|at| moved(place, at));
+        let inside = |at| raster.contains(point(place.back(complex(at))));
+        let loops = loops(drawing.bounds(), &limits, &inside);
+        let panels = BTreeMap::new();
+        let sheet = EvenSheet { limits, place, drawing, loops, panels, seen: 0.0 };
         Some((sheet.in_reach(&points)?, sheet))
     };
     let mut found: Vec<_> = places.into_par_iter().filter_map(at).collect();
@@ -281,7 +238,7 @@ fn best(
     for (openings, kept) in [(FEW_OPENINGS, COMPARED), (OPENINGS, 1)] {
         if found.len() > kept || kept == 1 {
             let made = found.into_par_iter().map(|sheet| sheet.with_panels(openings));
-            found = made.filter(EvenSheet::fits).collect();
+            found = made.filter(|sheet| sheet.fits(&sheet.opened(0.0).concat())).collect();
             found.sort_by(|one, other| other.seen.total_cmp(&one.seen));
             found.truncate(kept);
         }
@@ -317,15 +274,14 @@ mod tests {
     use super::*;
     use crate::fit::even_pattern::Opening;
     use crate::fit::even_pattern::{hinge, pairs};
-    use design::geometry::polygon::{self, self_crossing};
+    use design::geometry::polygon::{area, self_crossing};
     use rand::{RngExt, SeedableRng};
     use rand_chacha::ChaCha8Rng;
     use std::f64::consts::TAU;
 
-    const OPENING: Opening = Opening { angle: 1.047, set_back: 0.0 };
     const LIMITS: Limits = Limits {
-        stock: [f64::INFINITY; 2],
-        opening: OPENING,
+        stock: [99.0; 2],
+        opening: Opening { angle: 1.047, set_back: 0.0 },
         window: 0.42,
         width: 0.2,
         gap: 0.02,
@@ -392,20 +348,17 @@ mod tests {
     fn drawn_sheets_are_mechanisms_whose_panels_never_overlap() {
         let seen = |seed| {
             let sheet = EvenSheet::new(&drawn(seed), &[10.0], LIMITS, QUICK)?;
-            let area: f64 = sheet.panels.values().map(Region::area).sum();
+            let whole: f64 = sheet.panels.values().map(Region::area).sum();
             for step in 0..=20 {
                 let opened = Region::union_of(sheet.opened(f64::from(step) / 20.0));
-                assert!((opened.area() - area).abs() < 1e-4 * area, "{seed} at {step}");
+                assert!((opened.area() - whole).abs() < 1e-4 * whole, "{seed} at {step}");
             }
             let topology = sheet.topology();
             let hinges: BTreeSet<_> = sheet.loops.iter().flat_map(|at| pairs(*at)).collect();
             assert_eq!(topology.panel_count(), sheet.panels.len());
             assert_eq!(topology.hinge_count(), hinges.len());
             for trim in topology.trims.iter().flatten() {
-                assert!(
-                    polygon::area(trim) > 0.0 && self_crossing(trim).is_none(),
-                    "{seed}: {trim:?}"
-                );
+                assert!(area(trim) > 0.0 && self_crossing(trim).is_none(), "{seed}: {trim:?}");
             }
             for pair in hinges {
                 // The panels have the window of their hinge.
@@ -434,7 +387,6 @@ mod tests {
             Some(sheet.seen)
         };
         let seen: Vec<f64> = (0..40).into_par_iter().filter_map(seen).collect();
-        let mean = seen.iter().sum::<f64>() / seen.len() as f64;
-        assert!(seen.len() > 30 && mean > 0.93, "{}: {mean}", seen.len());
+        assert!(seen.len() > 30 && seen.iter().sum::<f64>() > 0.93 * seen.len() as f64, "{seen:?}");
     }
 }

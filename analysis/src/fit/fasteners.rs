@@ -2,7 +2,8 @@
 
 use crate::mounting::borne_by_hole;
 use crate::out_of_plane::Stability;
-use design::geometry::polygon::{bounds, distance, distance_to_outline};
+use design::equilibrium::warm_start::WarmStart;
+use design::geometry::polygon::{bounds, distance, distance_to_outline, size};
 use design::geometry::region::Region;
 use design::sheet::kinematics::deployed;
 use design::sheet::topology::Topology;
@@ -45,26 +46,21 @@ pub struct Held {
 
 impl Held {
     /// How the fasteners of a scene hold its sheet, whose panels have their middles at `flat` and,
-    /// opened evenly, at `even` (mm), turned by `turns` (rad); `None` without an equilibrium.
+    /// opened evenly, at `even` (mm); `None` without an equilibrium next to a `known` one.
     pub(super) fn of(
         scene: &Scene,
         flat: &[[f64; 2]],
         even: &[[f64; 2]],
-        turns: &[f64],
+        known: &WarmStart,
     ) -> Option<Self> {
-        let (problem, start) = (scene.problem().ok()?, scene.start());
-        let (_, sheet) = problem.cut(&start).ok()?;
-        // From the middle to the reference point of a panel.
-        let opened = sheet.panels.iter().zip(turns).enumerate().map(|(k, (panel, turn))| {
-            let moved = deployed(panel, [0.0, 0.0, *turn], flat[k]);
-            [even[k][0] - moved[0], even[k][1] - moved[1], *turn]
-        });
-        let response = problem.draft_near(&start, &opened.collect::<Vec<_>>()).ok()?;
+        let problem = scene.problem().ok()?;
+        let response = problem.draft(&scene.start(), Some(known)).ok()?;
+        let panels = &response.deployment.sheet.panels;
         let end = &response.state().configuration;
-        let off = (sheet.panels.iter().enumerate())
+        let off = (panels.iter().enumerate())
             .map(|(k, panel)| distance(deployed(panel, end[k], flat[k]), even[k]));
-        let [low, high] = bounds(even.iter().copied());
-        let side = f64::max(high[0] - low[0], high[1] - low[1]);
+        let [width, height] = size(bounds(even.iter().copied()));
+        let side = f64::max(width, height);
         let force = response.reactions.iter().map(|[x, y, _]| x.hypot(*y)).fold(0.0, f64::max);
         let mut held = Self {
             count: scene.config.supports.len(),
@@ -76,7 +72,7 @@ impl Held {
         };
         // The path costs more than its end.
         if held.suffices() {
-            let deployment = problem.deploy(&start).ok()?;
+            let deployment = problem.deploy(&scene.start()).ok()?;
             held.margin = Stability::new(scene, &problem, &deployment).map(|found| found.margin);
             held.leaves_domain = deployment.share_inside() < 1.0;
         }
@@ -90,8 +86,7 @@ impl Held {
     }
 }
 
-/// Panels far from each other along the sheet, in the order in which they are fastened: next is the
-/// one nearest to those before it, whose hole has the shortest way.
+/// Panels far from each other along the sheet, in the order in which they are fastened.
 pub(super) fn fastened(topology: &Topology, count: usize) -> Vec<usize> {
     let mut neighbours = vec![Vec::new(); topology.panel_count()];
     for site in &topology.sites {
@@ -131,19 +126,15 @@ pub(super) fn fastened(topology: &Topology, count: usize) -> Vec<usize> {
     while chosen.len() < count.min(panels.len()) {
         chosen.push(farthest(&chosen));
     }
-    let apart = |one: usize, other: usize| {
-        let [from, to] = [one, other].map(|panel| topology.places[panel]);
+    // The two farthest apart open the sheet.
+    let apart = |[one, other]: &[usize; 2]| {
+        let [from, to] = [one, other].map(|it| topology.places[chosen[*it]]);
         from[0].abs_diff(to[0]).pow(2) + from[1].abs_diff(to[1]).pow(2)
     };
-    let mut order: Vec<usize> = Vec::new();
-    while !chosen.is_empty() {
-        let of = |at: &usize| {
-            let others = if order.is_empty() { &chosen } else { &order };
-            let apart = others.iter().map(|other| apart(chosen[*at], *other));
-            if order.is_empty() { apart.max() } else { apart.min() }
-        };
-        let next = (0..chosen.len()).max_by_key(of).unwrap_or_default();
-        order.push(chosen.remove(next));
+    let pairs = (0..chosen.len()).flat_map(|other| (0..other).map(move |one| [one, other]));
+    if let Some([one, other]) = pairs.max_by_key(apart) {
+        chosen.swap(0, one);
+        chosen.swap(1, other);
     }
-    order
+    chosen
 }

@@ -28,7 +28,7 @@ pub struct Lost {
 
 /// The lost parts, the widest first.
 pub(super) fn lost(sheet: &EvenSheet) -> Vec<Lost> {
-    let drawing = sheet.drawing();
+    let drawing = &sheet.drawing;
     let seen = as_seen(sheet.opened(1.0), drawing);
     let missing = drawing.minus(&seen).opened(0.5 * SLIVER);
     let missed = f64::max(MISSED * drawing.area(), VOID);

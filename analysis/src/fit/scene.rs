@@ -19,6 +19,7 @@ use scene::{
     At, CellsConfig, Level, Posture, PostureConfig, Scene, SceneConfig, StartConfig, SupportConfig,
     SupportKind, rounded,
 };
+use support::{Fault, fault, refuse};
 
 /// The largest opening that is planned (rad): 60 degrees.
 const MOST: f64 = 1.047;
@@ -61,25 +62,13 @@ pub struct FittedScene {
     pub kept_by: Option<f64>,
 }
 
-/// Why a sheet is not fitted to a target.
-#[derive(Debug, thiserror::Error)]
-#[allow(missing_docs, reason = "the message of a variant is its documentation")]
-pub enum FitError {
-    #[error(
-        "the sheet has pins (level = \"pin\"): its search is on pins already; a fit is for a sheet with a hinge law"
-    )]
-    Pins,
-    #[error(
-        "the target is nowhere as wide as two panels of {side:.0} mm: use a larger sheet (--size, --stock) or a thinner one (--thickness)"
-    )]
-    Narrow { side: f64 },
-}
-
 /// The even sheet that opens onto the target of a scene, whose sheet stands for the space in its
 /// stock.
-pub fn fitted(scene: &Scene) -> Result<FittedScene, FitError> {
+pub fn fitted(scene: &Scene) -> Result<FittedScene, Fault> {
     if scene.config.level == Level::Pin {
-        return Err(FitError::Pins);
+        refuse!(
+            "the sheet has pins (level = \"pin\"): its search is on pins already; a fit is for a sheet with a hinge law"
+        );
     }
     let angle = opening(scene);
     let process = scene.config.process;
@@ -95,7 +84,11 @@ pub fn fitted(scene: &Scene) -> Result<FittedScene, FitError> {
         slit: process.slit_width / side,
     };
     let target = scene.target.region();
-    let sheet = largest(&target, limits).ok_or(FitError::Narrow { side })?;
+    let sheet = largest(&target, limits).ok_or_else(|| {
+        fault!(
+            "the target is nowhere as wide as two panels of {side:.0} mm: use a larger sheet (--size, --stock) or a thinner one (--thickness)"
+        )
+    })?;
     let topology = sheet.topology();
     let lost = lost(&sheet);
     let size = sheet.size(&target);
@@ -143,8 +136,9 @@ fn set_back(scene: &Scene, angle: f64) -> f64 {
 /// before the last percents of its size.
 fn largest(target: &Region, limits: Limits) -> Option<EvenSheet> {
     let size = growth(target.extent(), limits.stock) * target.longer_side();
-    let tried = LARGEST.into_iter().map(|part| SIZES.map(|factor| factor * part * size));
-    tried.filter_map(|sizes| EvenSheet::new(target, &sizes, limits, THOROUGH)).next()
+    LARGEST.into_iter().find_map(|part| {
+        EvenSheet::new(target, &SIZES.map(|factor| factor * part * size), limits, THOROUGH)
+    })
 }
 
 /// The keys of the scene with as few fasteners as suffice, and how they hold the sheet; if none
@@ -157,13 +151,20 @@ fn fasten(
 ) -> (SceneConfig, Option<Held>) {
     let laid = LaidSheet::new(sheet, topology, side);
     let [flat, even] = [0.0, laid.opened].map(|opened| laid.middles(opened));
-    let turns = sheet.turns(topology);
+    let most = laid.keys(scene, sheet, &fastened(topology, COUNTS[COUNTS.len() - 1]));
+    // With the most fasteners the sheet is nearest to its even opening.
+    let known = || {
+        let scene = scene.changed(most.clone()).ok()?;
+        let response = scene.problem().ok()?.response(&scene.start(), None).ok()?;
+        Some(response.deployment.warm_start())
+    };
+    let Some(known) = known() else { return (most, None) };
     let mut best: Option<(SceneConfig, Held)> = None;
     for count in COUNTS {
         let config = laid.keys(scene, sheet, &fastened(topology, count));
         // A sheet that is refused is not balanced: what is seen of its target says more.
         let changed = scene.changed(config.clone()).ok();
-        let Some(held) = changed.and_then(|scene| Held::of(&scene, &flat, &even, &turns)) else {
+        let Some(held) = changed.and_then(|scene| Held::of(&scene, &flat, &even, &known)) else {
             continue;
         };
         let suffices = held.suffices();
@@ -174,13 +175,7 @@ fn fasten(
             break;
         }
     }
-    match best {
-        Some((config, held)) => (config, Some(held)),
-        None => {
-            let most = fastened(topology, COUNTS[COUNTS.len() - 1]);
-            (laid.keys(scene, sheet, &most), None)
-        }
-    }
+    best.map_or((most, None), |(config, held)| (config, Some(held)))
 }
 
 /// An even sheet in the coordinates of its scene: turned back, so that the drawing stands upright,

@@ -35,7 +35,7 @@ use crate::{
 };
 use hinge::HingeDeformation;
 use std::iter::zip;
-use support::vectors::dot;
+use support::{fault, vectors::dot};
 
 /// Inputs of the equilibrium other than the design; by default the inputs of the problem.
 #[derive(Clone, Debug, PartialEq)]
@@ -134,41 +134,16 @@ impl DesignProblem {
     }
 
     /// A draft of the equilibrium of a design at full load next to the last state of a `known`
-    /// path; without one, or if there is none next to it, at the end of the path from the flat
-    /// sheet. The path may end on another branch than a draft next to another.
+    /// path, an error if there is none there; without one at the end of the path from the flat sheet,
+    /// which may end on another branch than a draft next to another.
     pub fn draft(
         &self,
         design: &DesignVector,
         known: Option<&WarmStart>,
     ) -> Result<Response, DesignError> {
+        let Some(known) = known else { return self.response(design, None) };
         self.responded(design, |solver, hinged| {
-            match known.and_then(|known| solver.full_load_near(hinged, known)) {
-                Some(step) => (vec![step], false),
-                None => (solver.load_steps_at(hinged, &FULL_LOAD), true),
-            }
-        })
-    }
-
-    /// A draft of the equilibrium of a design at full load next to a configuration; an error if
-    /// there is none.
-    pub fn draft_near(
-        &self,
-        design: &DesignVector,
-        configuration: &[Motion],
-    ) -> Result<Response, DesignError> {
-        self.responded(design, |solver, hinged| {
-            let mut start = configuration.to_vec();
-            for support in &solver.supports {
-                start[support.panel][support.dof.index()] = support.value;
-            }
-            let steps = vec![solver.full_load(hinged, start)];
-            let known = WarmStart { designs: hinged.sheet.designs(), steps };
-            (
-                vec![
-                    solver.full_load_near(hinged, &known).unwrap_or_else(|| known.steps[0].clone()),
-                ],
-                false,
-            )
+            (solver.full_load_near(hinged, known).into_iter().collect(), false)
         })
     }
 
@@ -194,7 +169,7 @@ impl DesignProblem {
         let law = mechanics.law.prepare(&sheet.designs());
         let hinged = mechanics.hinged(&sheet, &*law, false);
         let (path, followed) = solve(&mechanics.solver, hinged);
-        let state = path.last().expect("there is one step, or where the path ends");
+        let state = path.last().ok_or_else(|| fault!("no equilibrium is near the known one"))?;
         let reactions = mechanics.solver.reactions(hinged, &converged(state)?.configuration);
         drop(law);
         Ok(Response {

@@ -92,13 +92,14 @@ pub(super) fn springback_and_creep(of: &DeployedDesign, run: &FinishedRun) -> Ve
         return Vec::new();
     }
     let creep = scene.material.creep.as_ref();
-    let creep = fact("creep", creep, creeping(creep));
+    let mut facts = vec![fact("creep", creep, creeping(creep))];
     // Hinges of other laws are elastic: nothing stays.
     if scene.surrogate().is_none() {
-        return vec![creep];
+        return facts;
     }
-    let film = scene.material.regime(scene.config.ligament.range[1]) == Regime::Film;
-    let folded = film.then(|| text("folded before", FOLDED_BEFORE.into()));
+    if scene.material.regime(scene.config.ligament.range[1]) == Regime::Film {
+        facts.push(text("folded before", FOLDED_BEFORE.into()));
+    }
     let metal = if scene.material.young > METAL {
         "; metals yield sooner in reverse, which is not modelled: with kinematic hardening hinges of steel spring back by up to twice \
          as far, of aluminium by four times (docs/results/springback)"
@@ -110,17 +111,18 @@ pub(super) fn springback_and_creep(of: &DeployedDesign, run: &FinishedRun) -> Ve
     let Some(law) = &scene.springback else {
         let unknown = "not known: the sheet springs back when the load is taken off, and the scene names no law of released hinges \
                        (surrogate.springback)";
-        return [springback(None, unknown.into()), creep].into_iter().chain(folded).collect();
+        facts.push(springback(None, unknown.into()));
+        return facts;
     };
-    let unloaded = match unload(scene, problem, law, of.deployment) {
-        Err(error) => vec![springback(None, format!("not known: {error}"))],
+    match unload(scene, problem, law, of.deployment) {
+        Err(error) => facts.push(springback(None, format!("not known: {error}"))),
         Ok(shape) => {
+            facts.push(springback(Some(&shape), residual_opening(&shape, law.errors.as_ref())));
             let moments = moment_after_overshoot(scene, problem, law, of.deployment);
-            let unloaded = springback(Some(&shape), residual_opening(&shape, law.errors.as_ref()));
-            vec![unloaded, overshoot(moments)]
+            facts.push(overshoot(moments));
         }
-    };
-    unloaded.into_iter().chain([creep]).chain(folded).collect()
+    }
+    facts
 }
 
 /// The moments of hinges that were opened too far and brought back, over the reported moments.
