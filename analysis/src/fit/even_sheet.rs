@@ -63,9 +63,9 @@ pub struct EvenSheet {
 }
 
 impl EvenSheet {
-    /// The best sheet of a drawing whose longer side is so many squares long when flat, as one of
-    /// `sizes`, the largest first, says, of `made` that are compared; `None` if none fits into its
-    /// stock, and if the drawing is narrower than two squares everywhere.
+    /// The best sheet of a drawing, of `made` that are compared. Flat, its longer side is as many
+    /// squares long as one of `sizes`, the largest of which comes first. `None` if none fits into
+    /// its stock, and if the drawing is narrower than two squares everywhere.
     pub fn new(drawing: &Region, sizes: &[f64], limits: Limits, made: usize) -> Option<Self> {
         let [low, high] = drawing.bounds();
         let by_size = limits.opening.pitch() / drawing.longer_side();
