@@ -99,7 +99,9 @@ impl EvenSheet {
             squares(&self.loops).into_iter().map(|it| (it, it)).collect();
         for _ in 0..RINGS {
             for (cell, owner) in owners.clone() {
-                neighbours(cell).into_iter().for_each(|at| _ = owners.entry(at).or_insert(owner));
+                for next in neighbours(cell) {
+                    owners.entry(next).or_insert(owner);
+                }
             }
         }
         let opening = self.limits.opening;

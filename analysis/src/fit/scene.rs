@@ -152,7 +152,7 @@ fn fasten(
     let laid = LaidSheet::new(sheet, topology, side);
     let [flat, even] = [0.0, laid.opened].map(|opened| laid.middles(opened));
     let most = laid.keys(scene, sheet, &fastened(topology, COUNTS[COUNTS.len() - 1]));
-    // With the most fasteners the sheet is nearest to its even opening.
+    // The sheet with the most fasteners is nearest to its even opening.
     let known = || {
         let scene = scene.changed(most.clone()).ok()?;
         let response = scene.problem().ok()?.response(&scene.start(), None).ok()?;
