@@ -1,7 +1,7 @@
 //! Time to evaluate 275 hinges (a 15 x 10 sheet) with shipped weights, 6-128-128-128-64.
 //!
 //! Divide by 275 for the time per hinge. The lower bound of each order is the time of its matrix
-//! products: 1 (W), 2 (forces), 5 (tangent) and 7 (design) passes of 0.083 Mflop per hinge.
+//! products: 1 (W), 2 (forces), 5 (tangent) and 8 (design) passes of 0.042 Mflop per hinge.
 
 use hinge::{HingeDeformation, HingeDesign};
 use std::path::Path;

@@ -8,7 +8,18 @@
 //! rows n..2n, ...    da/dxi_k   one row block for each tangent k    T_l = (sigma'(a_{l-1}) T_{l-1}) W_l'
 //! ```
 //!
-//! One matrix product per layer computes the values and all tangents. For a function f of the
+//! The products are between pairs of units, j and n - 1 - j, which are mirror images in networks
+//! with mirror symmetry: with the sums p and the differences q of the inputs of a layer, and the
+//! half sums e and half differences o of its outputs,
+//!
+//! ```text
+//! e = E p,   o = O q,       a_j = e_j + o_j,   a_{n-1-j} = e_j - o_j
+//! ```
+//!
+//! takes half of the operations of a = W h. Columns are in this order: all sums or first units of
+//! pairs, then all differences or second units. Other networks need two more products.
+//!
+//! One sweep over the layers computes the values and all tangents. For a function f of the
 //! outputs with gradient `seed`, the reverse pass gives lambda = df/dh of every hidden unit, the
 //! gradient of f in all features, and the contribution of the network's curvature to the Hessian of
 //! f,
@@ -18,10 +29,10 @@
 //! ```
 
 use crate::features::FEATURES;
-use crate::network::{Affine, Network};
+use crate::network::{Affine, DIFFERENCE, Network, SUM};
 use crate::tanh::tanh;
 use faer::linalg::matmul::matmul;
-use faer::{Accum, MatMut, MatRef, Par};
+use faer::{Accum, Mat, MatMut, MatRef, Par};
 use pulp::{Simd, WithSimd};
 use std::cell::RefCell;
 use std::ops::Range;
@@ -105,16 +116,7 @@ impl Passes {
                 block,
                 activation: &mut self.activation,
             });
-            let units = affine.bias.len();
-            self.output.resize(rows * units, 0.0);
-            matmul(
-                MatMut::from_column_major_slice_mut(&mut self.output, rows, units),
-                Accum::Replace,
-                MatRef::from_column_major_slice(&self.activation, rows, affine.weight.ncols()),
-                affine.weight.transpose(),
-                1.0,
-                Par::Seq,
-            );
+            multiply(affine, &self.activation, rows, &mut self.output);
         }
         let rows = self.rows();
         let last = &network.affine[following.len()];
@@ -127,20 +129,19 @@ impl Passes {
 
     /// Evaluates the first layer without its bias; its tangents are the columns of its weight.
     fn enter(&mut self, first: &Affine) {
-        let (n, rows, units) = (self.n, self.rows(), first.bias.len());
-        self.output.resize(rows * units, 0.0);
-        let values = MatMut::from_column_major_slice_mut(&mut self.output, rows, units);
-        matmul(
-            values.subrows_mut(0, n),
-            Accum::Replace,
-            MatRef::from_column_major_slice(&self.inputs, n, FEATURES),
-            first.weight.transpose(),
-            1.0,
-            Par::Seq,
-        );
-        for (unit, column) in self.output.chunks_exact_mut(rows).enumerate() {
-            for (k, tangent) in self.tangents.clone().zip(column[n..].chunks_exact_mut(n)) {
-                tangent.fill(first.weight[(unit, k)]);
+        let (n, rows) = (self.n, self.rows());
+        multiply(first, &self.inputs, n, &mut self.adjoint);
+        self.output.resize(rows * first.bias.len(), 0.0);
+        let of_features = first.weights.iter().zip(first.outputs());
+        let units = of_features.flat_map(|([weight, _], units)| {
+            (0..units).map(move |unit| weight.as_ref().map(|weight| weight.row(unit)))
+        });
+        let columns = self.output.chunks_exact_mut(rows).zip(self.adjoint.chunks_exact(n));
+        for ((column, values), by_feature) in columns.zip(units) {
+            let (into, tangents) = column.split_at_mut(n);
+            into.copy_from_slice(values);
+            for (k, tangent) in self.tangents.clone().zip(tangents.chunks_exact_mut(n)) {
+                tangent.fill(by_feature.map_or(0.0, |by_feature| by_feature[k]));
             }
         }
     }
@@ -154,7 +155,7 @@ impl Passes {
         self.adjoint.clear();
         self.adjoint.extend_from_slice(seed);
         for (affine, block) in network.affine[1..].iter().zip(&self.hidden).rev() {
-            multiply(&self.adjoint, affine, n, &mut self.lambda);
+            multiply_transposed(affine, &self.adjoint, n, &mut self.lambda);
             pulp::Arch::new().dispatch(Deactivate {
                 rows,
                 block,
@@ -164,7 +165,7 @@ impl Passes {
             });
             std::mem::swap(&mut self.adjoint, &mut self.lambda);
         }
-        multiply(&self.adjoint, &network.affine[0], n, &mut self.gradient);
+        multiply_transposed(&network.affine[0], &self.adjoint, n, &mut self.gradient);
     }
 
     /// Adds J'J to `packed`, where J is the derivative of the outputs in the features of the
@@ -196,23 +197,54 @@ impl Passes {
     }
 }
 
-/// Multiplies `adjoint` by the weight of a layer, which gives df/dh of the units of the preceding
-/// layer.
-fn multiply(adjoint: &[f64], affine: &Affine, n: usize, product: &mut Vec<f64>) {
-    let (outputs, inputs) = affine.weight.shape();
-    product.resize(n * inputs, 0.0);
-    matmul(
-        MatMut::from_column_major_slice_mut(product, n, inputs),
-        Accum::Replace,
-        MatRef::from_column_major_slice(adjoint, n, outputs),
-        affine.weight.as_ref(),
-        1.0,
-        Par::Seq,
-    );
+/// Multiplies `inputs` by the weights of a layer.
+fn multiply(affine: &Affine, inputs: &[f64], rows: usize, product: &mut Vec<f64>) {
+    let weight = |to: usize, from: usize| affine.weights[to][from].as_ref().map(Mat::transpose);
+    multiply_pairs(weight, inputs, rows, affine.outputs(), product);
 }
 
-/// Adds the bias to the pre-activations in `block`, replaces them by tanh(a), and writes [tanh(a),
-/// sigma'(a) T] to `activation`.
+/// Multiplies `adjoint` by the transposed weights of a layer, which gives df/dh of the units of the
+/// preceding layer.
+fn multiply_transposed(affine: &Affine, adjoint: &[f64], rows: usize, product: &mut Vec<f64>) {
+    let weight = |to: usize, from: usize| affine.weights[from][to].as_ref().map(Mat::as_ref);
+    multiply_pairs(weight, adjoint, rows, affine.inputs, product);
+}
+
+/// Multiplies sums and differences by weights of shape (inputs, outputs).
+fn multiply_pairs<'a>(
+    weight: impl Fn(usize, usize) -> Option<MatRef<'a, f64>>,
+    inputs: &[f64],
+    rows: usize,
+    outputs: [usize; 2],
+    product: &mut Vec<f64>,
+) {
+    product.resize(rows * (outputs[SUM] + outputs[DIFFERENCE]), 0.0);
+    let (sums, differences) = product.split_at_mut(rows * outputs[SUM]);
+    for (to, product) in [(SUM, sums), (DIFFERENCE, differences)] {
+        let mut accum = Accum::Replace;
+        for from in [SUM, DIFFERENCE] {
+            let Some(weight) = weight(to, from) else { continue };
+            let len = rows * weight.nrows();
+            let inputs = if from == SUM { &inputs[..len] } else { &inputs[inputs.len() - len..] };
+            matmul(
+                MatMut::from_column_major_slice_mut(product, rows, weight.ncols()),
+                accum,
+                MatRef::from_column_major_slice(inputs, rows, weight.nrows()),
+                weight,
+                1.0,
+                Par::Seq,
+            );
+            accum = Accum::Add;
+        }
+        if accum == Accum::Replace {
+            product.fill(0.0);
+        }
+    }
+}
+
+/// Adds the bias to the pre-activations in `block`, whose sums and differences it replaces by
+/// [tanh(a), T] of the units, and writes the sums and differences of [tanh(a), sigma'(a) T] to
+/// `activation`.
 struct Activate<'a> {
     n: usize,
     rows: usize,
@@ -226,27 +258,47 @@ impl WithSimd for Activate<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
-        let columns = self.block.chunks_exact_mut(self.rows);
-        let activations = self.activation.chunks_exact_mut(self.rows);
-        for ((column, activation), bias) in columns.zip(activations).zip(self.bias) {
-            let (values, tangents) = column.split_at_mut(self.n);
-            let (activation, pushed) = activation.split_at_mut(self.n);
-            for (value, activation) in values.iter_mut().zip(activation) {
-                *value = tanh(*value + bias);
-                *activation = *value;
+        let (n, half) = (self.n, self.block.len() / 2);
+        let (firsts, seconds) = self.block.split_at_mut(half);
+        let (sums, differences) = self.activation.split_at_mut(half);
+        let (sum_bias, difference_bias) = self.bias.split_at(self.bias.len() / 2);
+        let columns = firsts.chunks_exact_mut(self.rows).zip(seconds.chunks_exact_mut(self.rows));
+        let activations =
+            sums.chunks_exact_mut(self.rows).zip(differences.chunks_exact_mut(self.rows));
+        let biases = sum_bias.iter().zip(difference_bias);
+        for (((first, second), (sum, difference)), (sum_bias, difference_bias)) in
+            columns.zip(activations).zip(biases)
+        {
+            let (values, tangents) = first.split_at_mut(n);
+            let (second_values, second_tangents) = second.split_at_mut(n);
+            let (sum, sum_tangents) = sum.split_at_mut(n);
+            let (difference, difference_tangents) = difference.split_at_mut(n);
+            for i in 0..n {
+                let (even, odd) = (values[i] + sum_bias, second_values[i] + difference_bias);
+                values[i] = tanh(even + odd);
+                second_values[i] = tanh(even - odd);
+                sum[i] = values[i] + second_values[i];
+                difference[i] = values[i] - second_values[i];
             }
-            let tangents = tangents.chunks_exact(self.n);
-            for (tangent, pushed) in tangents.zip(pushed.chunks_exact_mut(self.n)) {
-                for ((pushed, tangent), h) in pushed.iter_mut().zip(tangent).zip(&*values) {
-                    *pushed = (1.0 - h * h) * tangent;
+            let tangents = tangents.chunks_exact_mut(n).zip(second_tangents.chunks_exact_mut(n));
+            let pushed =
+                sum_tangents.chunks_exact_mut(n).zip(difference_tangents.chunks_exact_mut(n));
+            for ((first, second), (sum, difference)) in tangents.zip(pushed) {
+                for i in 0..n {
+                    let (even, odd) = (first[i], second[i]);
+                    (first[i], second[i]) = (even + odd, even - odd);
+                    let one = (1.0 - values[i] * values[i]) * first[i];
+                    let other = (1.0 - second_values[i] * second_values[i]) * second[i];
+                    (sum[i], difference[i]) = (one + other, one - other);
                 }
             }
         }
     }
 }
 
-/// Transforms df/dh to df/da in place, with sigma' = 1 - h^2 and sigma'' = -2 h sigma', and adds
-/// lambda sigma'' T_i T_j to `curvature`; `weight` is a buffer for lambda sigma'' of one unit.
+/// Replaces the sums and differences in `lambda`, of which df/dh is made, by the sums and
+/// differences of df/da, with sigma' = 1 - h^2 and sigma'' = -2 h sigma', and adds lambda sigma''
+/// T_i T_j to `curvature`; `weight` is a buffer for lambda sigma'' of one unit.
 struct Deactivate<'a> {
     rows: usize,
     block: &'a [f64],
@@ -261,14 +313,30 @@ impl WithSimd for Deactivate<'_> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
         let n = self.weight.len();
-        let columns = self.block.chunks_exact(self.rows);
-        for (column, lambda) in columns.zip(self.lambda.chunks_exact_mut(n)) {
-            let (values, tangents) = column.split_at(n);
-            for ((h, lambda), weight) in values.iter().zip(lambda).zip(&mut *self.weight) {
-                *lambda *= 1.0 - h * h;
-                *weight = -2.0 * h * *lambda;
+        let (firsts, seconds) = self.block.split_at(self.block.len() / 2);
+        let (sums, differences) = self.lambda.split_at_mut(self.lambda.len() / 2);
+        let columns = firsts.chunks_exact(self.rows).zip(seconds.chunks_exact(self.rows));
+        let lambdas = sums.chunks_exact_mut(n).zip(differences.chunks_exact_mut(n));
+        for ((first, second), (sum, difference)) in columns.zip(lambdas) {
+            let (values, tangents) = first.split_at(n);
+            let (second_values, second_tangents) = second.split_at(n);
+            for i in 0..n {
+                let (even, odd) = (sum[i], difference[i]);
+                sum[i] = (1.0 - values[i] * values[i]) * (even + odd);
+                difference[i] = (1.0 - second_values[i] * second_values[i]) * (even - odd);
             }
-            accumulate_products(self.weight, tangents, self.curvature);
+            for (values, lambda, tangents) in
+                [(values, &*sum, tangents), (second_values, &*difference, second_tangents)]
+            {
+                for i in 0..n {
+                    self.weight[i] = -2.0 * values[i] * lambda[i];
+                }
+                accumulate_products(self.weight, tangents, self.curvature);
+            }
+            for i in 0..n {
+                let (one, other) = (sum[i], difference[i]);
+                (sum[i], difference[i]) = (one + other, one - other);
+            }
         }
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::features::{FEATURES, Standardisation};
 use faer::Mat;
+use std::f64::consts::FRAC_1_SQRT_2;
 use support::{Fault, fault, refuse};
 
 /// An array of a weight file, in row-major order.
@@ -32,13 +33,27 @@ pub struct Network {
     pub(crate) affine: Vec<Affine>,
 }
 
-/// An affine map in a form for matrix products.
+/// An affine map between the sums and differences of pairs of units: see [`crate::mlp_kernels`].
 #[derive(Clone, Debug)]
 pub(crate) struct Affine {
-    /// (outputs, inputs)
-    pub weight: Mat<f64>,
+    /// By [`SUM`] and [`DIFFERENCE`] of outputs and inputs; `None` if zero. In a network with mirror
+    /// symmetry no sum depends on a difference, and no difference on a sum.
+    pub weights: [[Option<Mat<f64>>; 2]; 2],
+    /// Number of sums and of differences of the inputs; the features are sums.
+    pub inputs: [usize; 2],
+    /// Of the sums, then of the differences.
     pub bias: Vec<f64>,
 }
+
+/// Positions in [`Affine::weights`].
+pub(crate) const SUM: usize = 0;
+pub(crate) const DIFFERENCE: usize = 1;
+
+/// Units with their factors.
+type Combination = Vec<(usize, f64)>;
+
+/// Sums of units, then differences.
+type Combinations = [Vec<Combination>; 2];
 
 impl Network {
     /// Validates every tensor. `name` is the name of the network in errors, `outputs` the required
@@ -61,10 +76,27 @@ impl Network {
             bias.check(&format!("{name}.{index}.bias"), &[rows])?;
             inputs = bias.values.len();
         }
-        let mut affine: Vec<Affine> = layers.iter().map(Affine::new).collect();
-        affine[0].fold(standardisation);
-        affine[0].widen();
-        Ok(Self { layers, affine })
+        let count = layers.len();
+        let affine = (0..count).map(|index| {
+            let Layer { weight, bias } = &layers[index];
+            let [outputs, inputs] = [weight.shape[0], weight.shape[1]];
+            let mut weight = Mat::from_fn(outputs, inputs, |i, j| weight.values[i * inputs + j]);
+            let mut bias = bias.values.clone();
+            let inputs = if index == 0 {
+                fold(standardisation, &mut weight, &mut bias);
+                alone(FEATURES)
+            } else {
+                pairs(inputs, 0.5)
+            };
+            let outputs = match (index + 1 == count, outputs) {
+                (true, 1) => alone(1),
+                // The sum of the squares of the outputs is the same.
+                (true, _) => pairs(outputs, FRAC_1_SQRT_2),
+                (false, _) => pairs(outputs, 0.5),
+            };
+            Affine::new(&weight, &bias, &inputs, &outputs)
+        });
+        Ok(Self { affine: affine.collect(), layers })
     }
 
     /// The layers as in the weight file.
@@ -83,29 +115,64 @@ impl Network {
 }
 
 impl Affine {
-    fn new(layer: &Layer) -> Self {
-        let (outputs, inputs) = (layer.bias.values.len(), layer.weight.shape[1]);
+    fn new(weight: &Mat<f64>, bias: &[f64], inputs: &Combinations, outputs: &Combinations) -> Self {
+        let block = |to: &Vec<Combination>, from: &Vec<Combination>| {
+            // The sum of a row is exactly the negative of that of its mirror image.
+            let of_row = |row, j: usize| -> f64 {
+                from[j].iter().map(|(column, factor)| factor * weight[(row, *column)]).sum()
+            };
+            let all = Mat::from_fn(to.len(), from.len(), |i, j| -> f64 {
+                to[i].iter().map(|(row, factor)| factor * of_row(*row, j)).sum()
+            });
+            let is_zero = all.col_iter().all(|column| column.iter().all(|weight| *weight == 0.0));
+            (!is_zero).then_some(all)
+        };
+        let sum = |combination: &Combination| {
+            combination.iter().map(|(unit, factor)| factor * bias[*unit]).sum()
+        };
         Self {
-            weight: Mat::from_fn(outputs, inputs, |i, j| layer.weight.values[i * inputs + j]),
-            bias: layer.bias.values.clone(),
+            weights: outputs.each_ref().map(|to| inputs.each_ref().map(|from| block(to, from))),
+            inputs: inputs.each_ref().map(Vec::len),
+            bias: outputs.iter().flatten().map(sum).collect(),
         }
     }
 
-    /// W (xi - mean) / std + b = (W / std) xi + (b - (W / std) mean)
-    fn fold(&mut self, standardisation: &Standardisation) {
-        for (k, column) in self.weight.col_iter_mut().enumerate() {
-            for (weight, bias) in column.iter_mut().zip(&mut self.bias) {
-                *weight /= standardisation.std[k];
-                *bias -= *weight * standardisation.mean[k];
-            }
+    /// Number of sums and of differences of the outputs.
+    pub(crate) fn outputs(&self) -> [usize; 2] {
+        let units = self.bias.len();
+        [units.div_ceil(2), units / 2]
+    }
+}
+
+/// Every unit as a sum of its own.
+fn alone(units: usize) -> Combinations {
+    [(0..units).map(|unit| vec![(unit, 1.0)]).collect(), Vec::new()]
+}
+
+/// Sums and differences of units j and n - 1 - j, times a factor; an odd number of units has one
+/// more, which is zero.
+fn pairs(units: usize, factor: f64) -> Combinations {
+    let last = units.next_multiple_of(2) - 1;
+    [factor, -factor].map(|second| {
+        let pair = |unit| {
+            let both = [(unit, factor), (last - unit, second)];
+            both.into_iter().filter(|(unit, _)| *unit < units).collect()
+        };
+        (0..units.div_ceil(2)).map(pair).collect()
+    })
+}
+
+/// The weights of features that are not standardised, and of all features:
+/// W (xi - mean) / std + b = (W / std) xi + (b - (W / std) mean).
+fn fold(standardisation: &Standardisation, weight: &mut Mat<f64>, bias: &mut [f64]) {
+    for (k, column) in weight.col_iter_mut().enumerate() {
+        for (weight, bias) in column.iter_mut().zip(&mut *bias) {
+            *weight /= standardisation.std[k];
+            *bias -= *weight * standardisation.mean[k];
         }
     }
-
-    /// Adds the features that the layer does not depend on.
-    fn widen(&mut self) {
-        let outputs = self.weight.nrows();
-        self.weight.resize_with(outputs, FEATURES, |_, _| 0.0);
-    }
+    let outputs = weight.nrows();
+    weight.resize_with(outputs, FEATURES, |_, _| 0.0);
 }
 
 pub(crate) fn missing(tensor: &str) -> Fault {
