@@ -35,6 +35,7 @@ use faer::linalg::matmul::matmul;
 use faer::{Accum, Mat, MatMut, MatRef, Par};
 use pulp::{Simd, WithSimd};
 use std::cell::RefCell;
+use std::iter::zip;
 use std::ops::Range;
 
 /// Approximate maximum number of rows of a block. It is large enough that the packing of the
@@ -258,42 +259,36 @@ impl WithSimd for Activate<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
-        let (n, half) = (self.n, self.block.len() / 2);
-        let (firsts, seconds) = self.block.split_at_mut(half);
-        let (sums, differences) = self.activation.split_at_mut(half);
-        let (sum_bias, difference_bias) = self.bias.split_at(self.bias.len() / 2);
-        let columns = firsts.chunks_exact_mut(self.rows).zip(seconds.chunks_exact_mut(self.rows));
-        let activations =
-            sums.chunks_exact_mut(self.rows).zip(differences.chunks_exact_mut(self.rows));
-        let biases = sum_bias.iter().zip(difference_bias);
-        for (((first, second), (sum, difference)), (sum_bias, difference_bias)) in
-            columns.zip(activations).zip(biases)
-        {
-            let (values, tangents) = first.split_at_mut(n);
-            let (second_values, second_tangents) = second.split_at_mut(n);
-            let (sum, sum_tangents) = sum.split_at_mut(n);
-            let (difference, difference_tangents) = difference.split_at_mut(n);
+        let n = self.n;
+        let units = zip(pairs(self.block, self.rows), pairs(self.activation, self.rows));
+        let (sums, differences) = self.bias.split_at(self.bias.len() / 2);
+        for ((block, activation), (even_bias, odd_bias)) in zip(units, zip(sums, differences)) {
+            let [(h, tangents), (g, opposite)] = block.map(|column| column.split_at_mut(n));
+            let [(sum, sums), (difference, differences)] =
+                activation.map(|column| column.split_at_mut(n));
             for i in 0..n {
-                let (even, odd) = (values[i] + sum_bias, second_values[i] + difference_bias);
-                values[i] = tanh(even + odd);
-                second_values[i] = tanh(even - odd);
-                sum[i] = values[i] + second_values[i];
-                difference[i] = values[i] - second_values[i];
+                let (even, odd) = (h[i] + even_bias, g[i] + odd_bias);
+                (h[i], g[i]) = (tanh(even + odd), tanh(even - odd));
+                (sum[i], difference[i]) = (h[i] + g[i], h[i] - g[i]);
             }
-            let tangents = tangents.chunks_exact_mut(n).zip(second_tangents.chunks_exact_mut(n));
-            let pushed =
-                sum_tangents.chunks_exact_mut(n).zip(difference_tangents.chunks_exact_mut(n));
-            for ((first, second), (sum, difference)) in tangents.zip(pushed) {
+            let tangents = zip(tangents.chunks_exact_mut(n), opposite.chunks_exact_mut(n));
+            let pushed = zip(sums.chunks_exact_mut(n), differences.chunks_exact_mut(n));
+            for ((t, u), (sum, difference)) in zip(tangents, pushed) {
                 for i in 0..n {
-                    let (even, odd) = (first[i], second[i]);
-                    (first[i], second[i]) = (even + odd, even - odd);
-                    let one = (1.0 - values[i] * values[i]) * first[i];
-                    let other = (1.0 - second_values[i] * second_values[i]) * second[i];
+                    (t[i], u[i]) = (t[i] + u[i], t[i] - u[i]);
+                    let [one, other] = [(h[i], t[i]), (g[i], u[i])].map(|(h, t)| (1.0 - h * h) * t);
                     (sum[i], difference[i]) = (one + other, one - other);
                 }
             }
         }
     }
+}
+
+/// The columns of pairs of units in a block with `rows` rows.
+#[inline(always)]
+fn pairs(block: &mut [f64], rows: usize) -> impl Iterator<Item = [&mut [f64]; 2]> {
+    let (firsts, seconds) = block.split_at_mut(block.len() / 2);
+    zip(firsts.chunks_exact_mut(rows), seconds.chunks_exact_mut(rows)).map(<[_; 2]>::from)
 }
 
 /// Replaces the sums and differences in `lambda`, of which df/dh is made, by the sums and
@@ -314,28 +309,23 @@ impl WithSimd for Deactivate<'_> {
     fn with_simd<S: Simd>(self, _: S) {
         let n = self.weight.len();
         let (firsts, seconds) = self.block.split_at(self.block.len() / 2);
-        let (sums, differences) = self.lambda.split_at_mut(self.lambda.len() / 2);
-        let columns = firsts.chunks_exact(self.rows).zip(seconds.chunks_exact(self.rows));
-        let lambdas = sums.chunks_exact_mut(n).zip(differences.chunks_exact_mut(n));
-        for ((first, second), (sum, difference)) in columns.zip(lambdas) {
-            let (values, tangents) = first.split_at(n);
-            let (second_values, second_tangents) = second.split_at(n);
+        let columns = zip(firsts.chunks_exact(self.rows), seconds.chunks_exact(self.rows));
+        for ([sum, difference], columns) in zip(pairs(self.lambda, n), columns) {
+            let [(h, tangents), (g, opposite)] =
+                <[_; 2]>::from(columns).map(|column| column.split_at(n));
             for i in 0..n {
                 let (even, odd) = (sum[i], difference[i]);
-                sum[i] = (1.0 - values[i] * values[i]) * (even + odd);
-                difference[i] = (1.0 - second_values[i] * second_values[i]) * (even - odd);
+                sum[i] = (1.0 - h[i] * h[i]) * (even + odd);
+                difference[i] = (1.0 - g[i] * g[i]) * (even - odd);
             }
-            for (values, lambda, tangents) in
-                [(values, &*sum, tangents), (second_values, &*difference, second_tangents)]
-            {
+            for (h, lambda, tangents) in [(h, &*sum, tangents), (g, &*difference, opposite)] {
                 for i in 0..n {
-                    self.weight[i] = -2.0 * values[i] * lambda[i];
+                    self.weight[i] = -2.0 * h[i] * lambda[i];
                 }
                 accumulate_products(self.weight, tangents, self.curvature);
             }
             for i in 0..n {
-                let (one, other) = (sum[i], difference[i]);
-                (sum[i], difference[i]) = (one + other, one - other);
+                (sum[i], difference[i]) = (sum[i] + difference[i], sum[i] - difference[i]);
             }
         }
     }

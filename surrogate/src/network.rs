@@ -49,12 +49,6 @@ pub(crate) struct Affine {
 pub(crate) const SUM: usize = 0;
 pub(crate) const DIFFERENCE: usize = 1;
 
-/// Units with their factors.
-type Combination = Vec<(usize, f64)>;
-
-/// Sums of units, then differences.
-type Combinations = [Vec<Combination>; 2];
-
 impl Network {
     /// Validates every tensor. `name` is the name of the network in errors, `outputs` the required
     /// number of outputs.
@@ -76,27 +70,12 @@ impl Network {
             bias.check(&format!("{name}.{index}.bias"), &[rows])?;
             inputs = bias.values.len();
         }
-        let count = layers.len();
-        let affine = (0..count).map(|index| {
-            let Layer { weight, bias } = &layers[index];
-            let [outputs, inputs] = [weight.shape[0], weight.shape[1]];
-            let mut weight = Mat::from_fn(outputs, inputs, |i, j| weight.values[i * inputs + j]);
-            let mut bias = bias.values.clone();
-            let inputs = if index == 0 {
-                fold(standardisation, &mut weight, &mut bias);
-                alone(FEATURES)
-            } else {
-                pairs(inputs, 0.5)
-            };
-            let outputs = match (index + 1 == count, outputs) {
-                (true, 1) => alone(1),
-                // The sum of the squares of the outputs is the same.
-                (true, _) => pairs(outputs, FRAC_1_SQRT_2),
-                (false, _) => pairs(outputs, 0.5),
-            };
-            Affine::new(&weight, &bias, &inputs, &outputs)
-        });
-        Ok(Self { affine: affine.collect(), layers })
+        let last = layers.len() - 1;
+        let affine = |(index, layer): (usize, &Layer)| {
+            let standardisation = (index == 0).then_some(standardisation);
+            Affine::new(layer, standardisation, index == last)
+        };
+        Ok(Self { affine: layers.iter().enumerate().map(affine).collect(), layers })
     }
 
     /// The layers as in the weight file.
@@ -115,25 +94,39 @@ impl Network {
 }
 
 impl Affine {
-    fn new(weight: &Mat<f64>, bias: &[f64], inputs: &Combinations, outputs: &Combinations) -> Self {
-        let block = |to: &Vec<Combination>, from: &Vec<Combination>| {
-            // The sum of a row is exactly the negative of that of its mirror image.
-            let of_row = |row, j: usize| -> f64 {
-                from[j].iter().map(|(column, factor)| factor * weight[(row, *column)]).sum()
-            };
-            let all = Mat::from_fn(to.len(), from.len(), |i, j| -> f64 {
-                to[i].iter().map(|(row, factor)| factor * of_row(*row, j)).sum()
-            });
-            let is_zero = all.col_iter().all(|column| column.iter().all(|weight| *weight == 0.0));
-            (!is_zero).then_some(all)
+    /// A layer of a network; the first one has the standardisation of its inputs.
+    fn new(layer: &Layer, first: Option<&Standardisation>, is_last: bool) -> Self {
+        let (outputs, inputs) = (layer.bias.values.len(), layer.weight.shape[1]);
+        let mut weight = Mat::from_fn(outputs, inputs, |i, j| layer.weight.values[i * inputs + j]);
+        let mut bias = Mat::from_fn(outputs, 1, |i, _| layer.bias.values[i]);
+        if let Some(standardisation) = first {
+            // W (xi - mean) / std + b = (W / std) xi + (b - (W / std) mean)
+            for (k, mut column) in weight.col_iter_mut().enumerate() {
+                column /= standardisation.std[k];
+                let mut bias = bias.as_mut().col_mut(0);
+                bias -= standardisation.mean[k] * &column;
+            }
+            // Features on which the layer does not depend.
+            weight.resize_with(outputs, FEATURES, |_, _| 0.0);
+        }
+        let of_outputs = |rows: Mat<f64>| match (is_last, outputs) {
+            (true, 1) => alone(rows),
+            // The sum of the squares of the outputs is the same.
+            (true, _) => in_pairs(rows, FRAC_1_SQRT_2),
+            (false, _) => in_pairs(rows, 0.5),
         };
-        let sum = |combination: &Combination| {
-            combination.iter().map(|(unit, factor)| factor * bias[*unit]).sum()
+        let of_inputs = |rows: Mat<f64>| {
+            let columns = rows.transpose().to_owned();
+            let pairs = if first.is_some() { alone(columns) } else { in_pairs(columns, 0.5) };
+            pairs.map(|columns| columns.transpose().to_owned())
         };
+        let weights = of_outputs(weight).map(of_inputs);
+        let is_zero = |block: &Mat<f64>| block.col_iter().all(|column| column.norm_max() == 0.0);
         Self {
-            weights: outputs.each_ref().map(|to| inputs.each_ref().map(|from| block(to, from))),
-            inputs: inputs.each_ref().map(Vec::len),
-            bias: outputs.iter().flatten().map(sum).collect(),
+            inputs: weights[SUM].each_ref().map(Mat::ncols),
+            weights: weights
+                .map(|blocks| blocks.map(|block| Some(block).filter(|it| !is_zero(it)))),
+            bias: of_outputs(bias).iter().flat_map(|part| part.col(0).iter().copied()).collect(),
         }
     }
 
@@ -144,35 +137,21 @@ impl Affine {
     }
 }
 
-/// Every unit as a sum of its own.
-fn alone(units: usize) -> Combinations {
-    [(0..units).map(|unit| vec![(unit, 1.0)]).collect(), Vec::new()]
+/// Every row as a sum of its own.
+fn alone(rows: Mat<f64>) -> [Mat<f64>; 2] {
+    let none = Mat::zeros(0, rows.ncols());
+    [rows, none]
 }
 
-/// Sums and differences of units j and n - 1 - j, times a factor; an odd number of units has one
-/// more, which is zero.
-fn pairs(units: usize, factor: f64) -> Combinations {
-    let last = units.next_multiple_of(2) - 1;
-    [factor, -factor].map(|second| {
-        let pair = |unit| {
-            let both = [(unit, factor), (last - unit, second)];
-            both.into_iter().filter(|(unit, _)| *unit < units).collect()
-        };
-        (0..units.div_ceil(2)).map(pair).collect()
+/// Sums and differences of rows j and n - 1 - j, times a factor; an odd number of rows has one more,
+/// which is zero.
+fn in_pairs(rows: Mat<f64>, factor: f64) -> [Mat<f64>; 2] {
+    let half = rows.nrows().div_ceil(2);
+    let at = |i, j| if i < rows.nrows() { rows[(i, j)] } else { 0.0 };
+    [1.0, -1.0].map(|sign| {
+        let pair = |i, j| factor * (at(i, j) + sign * at(2 * half - 1 - i, j));
+        Mat::from_fn(half, rows.ncols(), pair)
     })
-}
-
-/// The weights of features that are not standardised, and of all features:
-/// W (xi - mean) / std + b = (W / std) xi + (b - (W / std) mean).
-fn fold(standardisation: &Standardisation, weight: &mut Mat<f64>, bias: &mut [f64]) {
-    for (k, column) in weight.col_iter_mut().enumerate() {
-        for (weight, bias) in column.iter_mut().zip(&mut *bias) {
-            *weight /= standardisation.std[k];
-            *bias -= *weight * standardisation.mean[k];
-        }
-    }
-    let outputs = weight.nrows();
-    weight.resize_with(outputs, FEATURES, |_, _| 0.0);
 }
 
 pub(crate) fn missing(tensor: &str) -> Fault {

@@ -350,13 +350,12 @@ mod tests {
         let prepared = law.prepare(&[design(18.0, 1.4)]);
         let outside = HingeDeformation::from([9.0, -11.0, 1.4]);
         let at = |order| prepared.energies(&[outside], order)[0];
-        let all = at(Order::Design);
-        let mut expected = HingeEnergy { w: all.w, ..HingeEnergy::default() };
-        assert_eq!(at(Order::Value), expected);
-        expected.forces = all.forces;
-        assert_eq!(at(Order::Forces), expected);
-        expected.tangent = all.tangent;
-        assert_eq!(at(Order::Tangent), expected);
+        let [value, first, second] = [Order::Value, Order::Forces, Order::Tangent].map(at);
+        assert_eq!(value, HingeEnergy { w: value.w, ..HingeEnergy::default() });
+        let HingeEnergy { w, forces, .. } = first;
+        assert_eq!(first, HingeEnergy { w, forces, ..HingeEnergy::default() });
+        let HingeEnergy { w, forces, tangent, .. } = second;
+        assert_eq!(second, HingeEnergy { w, forces, tangent, ..HingeEnergy::default() });
     }
 
     /// On lines from the centre outwards the force that returns a hinge does not fall: no ridge,
