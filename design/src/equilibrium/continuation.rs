@@ -11,6 +11,10 @@
 //! move the sheet downhill in energy, from the unstable side of the limit point, to another
 //! minimum, from which its branch is followed.
 //!
+//! A learned law has ripples of the size of its error, at which a sheet jumps. Jumps within AGREEMENT
+//! are stepped over: the stable equilibrium downhill from the prediction is the next point of the
+//! path.
+//!
 //! The increments do not depend on the load steps, which are read off the path between them.
 
 use crate::{
@@ -41,9 +45,16 @@ const DOUBT: f64 = 1e-3;
 /// Range of the ratio of an increment to the last, if that was accepted and if it was rejected.
 const GROWTH: [f64; 2] = [0.5, 2.0];
 const CUT: [f64; 2] = [0.1, 0.5];
+/// The least ratio where the corrections diverge.
+const DIVERGED_CUT: f64 = 0.25;
+/// Length of an increment up to which a jump may be the reason that none is found.
+const SHORT: f64 = 0.01;
 /// Resolution of a limit point and of a bifurcation, from which the next branch grows like a square
 /// root.
 const RESOLVED: [f64; 2] = [1e-3, 1e-5];
+/// Maximum number of iterations from an unstable equilibrium to a stable one so near that it is the
+/// next one of the path.
+const SHORT_DESCENT: usize = 30;
 /// Length below which increments are given up.
 const SHORTEST: f64 = 1e-9;
 /// Parts of the load that are skipped where the path cannot be followed, in the order in which they
@@ -103,7 +114,7 @@ impl<'a> Follower<'a> {
         };
         let begin = match stable {
             Some(factor) => Some(follower.branch.exact(state, factor)),
-            None => follower.branch.settled(position.clone()).ok(),
+            None => follower.branch.settled(&position, solver.settings.max_iterations).ok(),
         };
         if let Some(begin) = begin {
             let moved = follower.branch.distance(&begin.state, &position);
@@ -165,12 +176,13 @@ impl<'a> Follower<'a> {
             let found = self.branch.close(start, normal, limit);
             let mut corrected = match found {
                 Ok(corrected) => corrected,
-                Err(f64::INFINITY) => {
-                    self.reject(length, CUT[0].max(0.25))?;
-                    continue;
+                Err(_) if length <= SHORT && self.step_over(length, limit).is_some() => {
+                    return Some(());
                 }
                 Err(error) => {
-                    self.reject(length, ratio(error).clamp(CUT[0], CUT[1]))?;
+                    // The ratio of an infinite error is zero.
+                    let least = if error.is_finite() { CUT[0] } else { DIVERGED_CUT };
+                    self.reject(length, ratio(error).clamp(least, CUT[1]))?;
                     continue;
                 }
             };
@@ -183,6 +195,9 @@ impl<'a> Follower<'a> {
             let fallen = self.last.position.at - point.position.at > NOWHERE;
             let passed = stable && !fold && fallen && length > RESOLVED[0];
             if !stable || passed {
+                if self.step_over(length, limit).is_some() {
+                    return Some(());
+                }
                 let resolution = RESOLVED[usize::from(!fold && !passed)];
                 if length <= resolution {
                     return self.jump(point, fold);
@@ -201,6 +216,21 @@ impl<'a> Follower<'a> {
             self.accept(point, (arc, stretch), next);
             return Some(());
         }
+    }
+
+    /// Accepts the stable equilibrium that is reached downhill from the prediction at a length ahead
+    /// if it agrees with that: a branch between, which ends in a jump as short, is left out.
+    fn step_over(&mut self, length: f64, limit: f64) -> Option<()> {
+        let start = self.ahead(length);
+        let grows = start.at > self.last.position.at;
+        let landed = grows.then(|| self.branch.settled(&start, SHORT_DESCENT).ok()).flatten()?;
+        if self.branch.distance(&landed.state, &start) > limit {
+            return None;
+        }
+        let point = self.branch.point(landed, Some(&self.last.rate));
+        let arc = self.arc_to(&point);
+        self.accept(point, arc, length);
+        Some(())
     }
 
     fn is_exhausted(&self) -> bool {
@@ -284,7 +314,8 @@ impl<'a> Follower<'a> {
         start: PathPoint,
         limit_point: bool,
     ) -> Result<(), Failure> {
-        let landed = self.branch.settled(start)?;
+        let iterations = self.branch.solver.settings.max_iterations;
+        let landed = self.branch.settled(&start, iterations)?;
         let moved = self.branch.distance(&landed.state, &self.last.position);
         self.jumps += usize::from(limit_point || moved > LEAP);
         self.restart(landed);
@@ -364,8 +395,12 @@ impl Branch<'_> {
     }
 
     /// The stable equilibrium that is reached downhill from a position at constant load.
-    pub(crate) fn settled(&mut self, start: PathPoint) -> Result<Corrected, Failure> {
-        let Minimum { state, tangent } = self.minimum(&start)?;
+    pub(crate) fn settled(
+        &mut self,
+        start: &PathPoint,
+        iterations: usize,
+    ) -> Result<Corrected, Failure> {
+        let Minimum { state, tangent } = self.descended(start, iterations)?;
         match tangent.factor.filter(HeldFactor::is_stable) {
             Some(factor) => Ok(self.exact(state, factor)),
             None => Err(Failure { residual: state.residual, end: DescentEnd::Stagnated }),

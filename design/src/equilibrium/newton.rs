@@ -68,11 +68,20 @@ impl Failure {
 impl Branch<'_> {
     /// A minimum near `start`, at lower energy.
     pub(crate) fn minimum(&mut self, start: &PathPoint) -> Result<Minimum, Failure> {
+        self.descended(start, self.solver.settings.max_iterations)
+    }
+
+    /// The same in a number of iterations at most.
+    pub(crate) fn descended(
+        &mut self,
+        start: &PathPoint,
+        iterations: usize,
+    ) -> Result<Minimum, Failure> {
         let settings = &self.solver.settings;
         let mut state = self.state_at(start, Order::Tangent).ok_or(Failure::NOT_FINITE)?;
         let (mut scale, mut memory) = (None, Vec::new());
         let (mut longest, mut shift) = (LONGEST_STEP, SHIFTS[0]);
-        for _ in 0..settings.max_iterations {
+        for _ in 0..iterations {
             let stationary = state.is_balanced(settings.tolerance);
             if stationary {
                 state.expected = None;
