@@ -21,14 +21,20 @@ const SHIFTS: u32 = 4;
 const TURNS: u32 = 6;
 /// Places along the axis of a symmetric drawing.
 const ALONG: u32 = 16;
-/// Numbers of the places whose panels are made, for a sheet and for a comparison.
-pub(super) const THOROUGH: usize = 32;
-pub(super) const QUICK: usize = 3;
-/// Openings at which a panel may not meet another one, and few of them, by which places are compared
-/// first; number of those whose panels are made.
+/// The search of a sheet, and a short one, which says whether there is one.
+pub(super) const THOROUGH: Search = Search { compared: 32, rounds: 4 };
+pub(super) const QUICK: Search = Search { compared: 3, rounds: 0 };
+/// Openings at which a panel may not meet another one, and few of them, by which places are
+/// compared; number of the places that are compared by all.
 const OPENINGS: u32 = 24;
-const FEW_OPENINGS: u32 = 4;
-const COMPARED: usize = 3;
+const FEW_OPENINGS: u32 = 2;
+const MADE: usize = 3;
+/// How far the best place is moved both ways: along x and y (pitches), by a turn (rad), in size
+/// (parts). Every round halves these steps.
+const STEPS: [f64; 4] = [0.125, 0.125, 0.13, 0.005];
+const ALL_STEPS: [usize; 4] = [0, 1, 2, 3];
+/// The steps that keep a symmetric drawing on its axis, which is upright.
+const ON_AXIS: [usize; 2] = [1, 3];
 /// Distance of the points of a raster in sides of a square.
 const RASTER: f64 = 0.05;
 /// The same where points are counted.
@@ -62,11 +68,23 @@ pub struct EvenSheet {
     pub seen: f64,
 }
 
+/// How many places are compared, and how often the best one is moved.
+#[derive(Clone, Copy)]
+pub(super) struct Search {
+    compared: usize,
+    rounds: i32,
+}
+
 impl EvenSheet {
-    /// The best sheet of a drawing, of `made` that are compared. Flat, its longer side is as many
+    /// The best sheet of a drawing that a search finds. Flat, its longer side is as many
     /// squares long as one of `sizes`, the largest of which comes first. `None` if none fits into
     /// its stock, and if the drawing is narrower than two squares everywhere.
-    pub fn new(drawing: &Region, sizes: &[f64], limits: Limits, made: usize) -> Option<Self> {
+    pub(super) fn new(
+        drawing: &Region,
+        sizes: &[f64],
+        limits: Limits,
+        search: Search,
+    ) -> Option<Self> {
         let [low, high] = drawing.bounds();
         let by_size = limits.opening.pitch() / drawing.longer_side();
         let scales = sizes.iter().map(|size| size * by_size);
@@ -78,7 +96,7 @@ impl EvenSheet {
                 let places = (0..ALONG).map(|v| [0.0, f64::from(v) / f64::from(ALONG)]);
                 places.map(move |at| placed(centroid, scale, turn, at, &limits))
             };
-            best(&drawing, limits, scales.clone().flat_map(along).collect(), made)
+            best(&drawing, limits, scales.clone().flat_map(along).collect(), search, &ON_AXIS)
         });
         let turn = |k: u32| FRAC_PI_2 * f64::from(k) / f64::from(TURNS);
         let turned = scales.flat_map(|scale| (0..TURNS).map(move |k| (scale, turn(k))));
@@ -87,7 +105,7 @@ impl EvenSheet {
             let all = (0..2 * SHIFTS).flat_map(|u| (0..SHIFTS).map(move |v| [u, v]));
             all.map(move |[u, v]| placed(middle, scale, turn, [shift(u), shift(v)], &limits))
         };
-        let any = best(&drawing, limits, turned.flat_map(shifts).collect(), made);
+        let any = best(&drawing, limits, turned.flat_map(shifts).collect(), search, &ALL_STEPS);
         let value = |sheet: &Option<Self>| sheet.as_ref().map_or(0.0, |sheet| sheet.seen);
         if value(&symmetric) + FOR_SYMMETRY >= value(&any) { symmetric } else { any }
     }
@@ -118,6 +136,21 @@ impl EvenSheet {
         self.panels = panels(&self.drawing, &self.loops, &self.limits, openings);
         self.seen = seen(opened(&self.panels, self.limits.opening), &self.drawing);
         self
+    }
+
+    /// Its place after a part of one of the [`STEPS`].
+    fn stepped(&self, step: usize, part: f64) -> Similarity {
+        let mut by = [0.0; STEPS.len()];
+        by[step] = part * STEPS[step];
+        let [x, y, turn, growth] = by;
+        let turn = (1.0 + growth) * c64::cis(turn);
+        let [low, high] = self.drawing.bounds().map(complex);
+        let middle = 0.5 * (low + high);
+        let shift = self.limits.opening.pitch() * complex([x, y]);
+        Similarity {
+            turn: turn * self.place.turn,
+            shift: middle + turn * (self.place.shift - middle) + shift,
+        }
     }
 
     /// Whether a flat sheet with these points fits into the stock.
@@ -216,12 +249,14 @@ pub(super) fn growth([width, height]: [f64; 2], [one, other]: [f64; 2]) -> f64 {
     f64::max(in_stock(one, other), in_stock(other, one))
 }
 
-/// The best sheet of the places whose squares reach the most of a drawing.
+/// The best sheet of the places whose squares reach the most of a drawing, and of those around it
+/// by some of the [`STEPS`].
 fn best(
     drawing: &Region,
     limits: Limits,
     places: Vec<Similarity>,
-    made: usize,
+    search: Search,
+    steps: &[usize],
 ) -> Option<EvenSheet> {
     let [raster, coarse] =
         [RASTER, COARSE].map(|step| Raster::new(drawing, step / places[0].scale()));
@@ -234,18 +269,32 @@ fn best(
         let sheet = EvenSheet { limits, place, drawing, loops, panels, seen: 0.0 };
         Some((sheet.in_reach(&points)?, sheet))
     };
-    let mut found: Vec<_> = places.into_par_iter().filter_map(at).collect();
-    found.sort_by_key(|(in_reach, _)| Reverse(*in_reach));
-    let mut found: Vec<_> = found.into_iter().map(|(_, sheet)| sheet).take(made).collect();
-    for (openings, kept) in [(FEW_OPENINGS, COMPARED), (OPENINGS, 1)] {
-        if found.len() > kept || kept == 1 {
-            let made = found.into_par_iter().map(|sheet| sheet.with_panels(openings));
-            found = made.filter(|sheet| sheet.fits(&sheet.opened(0.0).concat())).collect();
-            found.sort_by(|one, other| other.seen.total_cmp(&one.seen));
-            found.truncate(kept);
-        }
+    let in_reach = |places: Vec<Similarity>| {
+        let mut found: Vec<_> = places.into_par_iter().filter_map(at).collect();
+        found.sort_by_key(|(in_reach, _)| Reverse(*in_reach));
+        found.into_iter().map(|(_, sheet)| sheet).take(search.compared).collect()
+    };
+    let made = |places: Vec<EvenSheet>, openings| {
+        let made = places.into_par_iter().map(|sheet| sheet.with_panels(openings));
+        made.filter(|sheet| sheet.fits(&sheet.opened(0.0).concat())).collect()
+    };
+    let sort = |sheets: &mut Vec<EvenSheet>| {
+        sheets.sort_by(|one, other| other.seen.total_cmp(&one.seen));
+    };
+    let mut sheets: Vec<EvenSheet> = made(in_reach(places), FEW_OPENINGS);
+    for round in 0..search.rounds {
+        sort(&mut sheets);
+        let best = sheets.first()?;
+        let part = 0.5f64.powi(round);
+        let both_ways = steps.iter().flat_map(|step| [(*step, -part), (*step, part)]);
+        let near = both_ways.map(|(step, part)| best.stepped(step, part)).collect();
+        sheets.extend(made(in_reach(near), FEW_OPENINGS));
     }
-    found.pop()
+    sort(&mut sheets);
+    sheets.truncate(MADE);
+    let mut sheets = made(sheets, OPENINGS);
+    sort(&mut sheets);
+    sheets.into_iter().next()
 }
 
 /// The mirror axis of a drawing: its angle from the x axis (rad) and the centroid, through which it
