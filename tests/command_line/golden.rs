@@ -1,6 +1,6 @@
-//! The start designs of the shipped scenes have the losses and the cut files of
+//! The start designs of the shipped scenes have the losses, the cut files and the costs of
 //! tests/command_line/golden.txt: a change of the code that is not meant to change a design does
-//! not. With `KIRIGAMI_WRITE=1` the test writes the file instead, and the commit says why.
+//! not, and a path that takes more iterations is seen on any machine. With `KIRIGAMI_WRITE=1` the test writes the file instead, and the commit says why.
 
 use crate::common::Workplace;
 use design::geometry::polygon::bounds;
@@ -11,6 +11,8 @@ use std::path::{Path, PathBuf};
 
 /// Relative difference of a loss that is rounding.
 const ROUNDING: f64 = 1e-10;
+/// Relative difference of the iterations and factorisations of a path that is not.
+const DEARER: f64 = 0.1;
 
 fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
@@ -31,12 +33,13 @@ fn losses_and_cut_files_of_the_shipped_scenes_do_not_change() {
     let work = Workplace::new();
     let mut found = String::new();
     for scene in [scenes("configs/scenes"), scenes("configs/examples")].concat() {
+        let [iterations, factorisations] = effort(&scene);
         let (name, scene) = (scene.file_stem().unwrap().to_str().unwrap(), scene.display());
         let listing = work.json(&format!("inspect gradient {scene} --design start --json"));
         work.output(&format!("cut {scene} --design start --out {name} --force"));
         let drawing = std::fs::read(work.path(name).join("cut.dxf")).unwrap();
         let (loss, hash) = (&listing["loss"], blake3::hash(&drawing).to_hex());
-        writeln!(found, "{name} {loss} {hash}").unwrap();
+        writeln!(found, "{name} {loss} {hash} {iterations} {factorisations}").unwrap();
     }
     let file = root().join("tests/command_line/golden.txt");
     if std::env::var_os("KIRIGAMI_WRITE").is_some() {
@@ -49,7 +52,20 @@ fn losses_and_cut_files_of_the_shipped_scenes_do_not_change() {
         let [loss, expected] = [&found, &golden].map(|cells| cells[1].parse::<f64>().unwrap());
         assert!((loss / expected - 1.0).abs() < ROUNDING, "{found:?} {golden:?}");
         assert_eq!((found[0], found[2]), (golden[0], golden[2]));
+        for column in [3, 4] {
+            let [count, expected] =
+                [&found, &golden].map(|cells| cells[column].parse::<f64>().unwrap());
+            assert!((count - expected).abs() <= DEARER * expected, "{found:?} {golden:?}");
+        }
     }
+}
+
+/// Iterations and factorisations of the path of the start design; zero with pin hinges.
+fn effort(scene: &Path) -> [usize; 2] {
+    let scene = Scene::read(scene).unwrap();
+    let deployment = scene.problem().unwrap().deploy(&scene.start()).unwrap();
+    let efforts = || deployment.path.iter().map(|step| step.effort);
+    [efforts().map(|it| it.iterations).sum(), efforts().map(|it| it.factorisations).sum()]
 }
 
 /// The flat sheet, and the opened one on its target, side by side (SVG).
