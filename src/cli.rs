@@ -1,13 +1,13 @@
 //! The command line: one subcommand per module of [`crate::commands`].
 
 use crate::commands::{
-    compare, completions, cut, design, doctor, export, init, inspect, levels, material, studio,
+    compare, cut, design, doctor, export, init, inspect, levels, material, studio,
 };
 #[cfg(feature = "pipeline")]
 use crate::commands::{demo, pipeline};
 use anyhow::Result;
 use app::progress;
-use clap::{CommandFactory, Parser, Subcommand};
+use clap::{Parser, Subcommand};
 use support::verbose;
 
 /// Design kirigami sheets whose hinges are measured by finite elements
@@ -51,7 +51,6 @@ enum Command {
     #[cfg(feature = "pipeline")]
     #[command(flatten)]
     Pipeline(pipeline::PipelineCommand),
-    Completions(completions::CompletionsCommand),
 }
 
 impl Cli {
@@ -78,7 +77,6 @@ impl Cli {
             Command::Demo(command) => command.run(|words| Self::try_parse_from(words)?.run()),
             #[cfg(feature = "pipeline")]
             Command::Pipeline(command) => command.run(),
-            Command::Completions(command) => command.run(Self::command()),
         }
     }
 }

@@ -24,7 +24,6 @@ macro_rules! subcommands {
 #[cfg(feature = "pipeline")]
 pub mod campaign;
 pub mod compare;
-pub mod completions;
 pub mod cut;
 #[cfg(feature = "pipeline")]
 pub mod dataset;

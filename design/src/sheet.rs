@@ -6,7 +6,6 @@ pub mod cutting_process;
 pub mod hinge_window;
 pub mod ideal_deployment;
 pub mod kinematics;
-pub mod opening_limits;
 pub mod panel;
 pub mod topology;
 pub mod validity;

@@ -66,9 +66,6 @@ fn the_solver_runs_in_its_own_environment() {
 fn output_that_cannot_be_written_is_an_error_and_no_panic() {
     let work = Workplace::new();
     let full = std::fs::File::options().write(true).open("/dev/full");
-    let message = failure(work.program("completions bash").stdout(full.unwrap()));
-    assert!(message.contains("No space left"), "{message}");
-    let full = std::fs::File::options().write(true).open("/dev/full");
     let message = failure(work.program(&format!("campaign plan {DEMO}")).stdout(full.unwrap()));
     assert!(
         message.starts_with("error: cannot write to stdout: No space left")

@@ -2,6 +2,7 @@
 //! other programs.
 
 use crate::common::Workplace;
+use app::chosen::Chosen;
 use serde_json::Value;
 use std::path::Path;
 
@@ -64,11 +65,10 @@ fn a_measured_sheet_is_compared_with_its_path() {
     assert_eq!((rows("residuals.csv"), rows("openings.csv")), (4 * 49, 84));
 
     // The sheet before deployment, in the same frame: nothing slipped.
-    let pattern = work.json(&format!(
-        "inspect deploy {SCENE} --design runs/linear-7x7/state.json --opening-deg 0 --json"
-    ));
-    let flat: Vec<[[f64; 2]; 4]> =
-        serde_json::from_value(pattern["panel_corners"].clone()).unwrap();
+    let (scene, state) = (work.path(SCENE), work.path("runs/linear-7x7/state.json"));
+    let (scene, design, _) = Chosen { scene: &scene, design: Some(&state) }.read().unwrap();
+    let (_, sheet) = scene.problem().unwrap().cut(&design).unwrap();
+    let flat: Vec<_> = sheet.panels.iter().map(|panel| panel.corners).collect();
     measure(&work, "closed.csv", &flat);
     let report = compared(&work, "points.csv --closed closed.csv --out report");
     let slip = &report["closed"]["slips"][0];

@@ -141,17 +141,6 @@ impl CutPattern {
         self.points[self.grid.endpoint(i, j, Endpoint::XPrime)]
     }
 
-    /// The sides r L and (1 - r) L of the void of every interior cut (mm), row by row.
-    pub fn void_sides(&self) -> Vec<Point> {
-        let cuts = zip(self.grid.interior_vertices(), &self.r);
-        cuts.map(|((i, j), r)| {
-            let [a, b] = self.grid.facing_endpoints(i, j);
-            let length = (complex(self.points[a]) - complex(self.points[b])).norm();
-            [r * length, (1.0 - r) * length]
-        })
-        .collect()
-    }
-
     /// The gradient in (z, ell) and in the outline's corners of a function with the given gradient
     /// in [`points`](Self::points).
     pub fn pullback(&self, points: &[c64]) -> (PatternCoordinates, [Point; 4]) {
