@@ -62,7 +62,7 @@ impl TrainingDomain {
     }
 
     /// Whether the width, the angle and the hole of a ligament are within their intervals.
-    pub fn has_ligament(&self, design: &HingeDesign) -> bool {
+    fn has_ligament(&self, design: &HingeDesign) -> bool {
         let within =
             |[minimum, maximum]: [f64; 2], value: f64| minimum <= value && value <= maximum;
         within(self.w_lig, design.w_lig)

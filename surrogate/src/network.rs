@@ -36,12 +36,12 @@ pub struct Network {
 /// An affine map between the sums and differences of pairs of units: see [`crate::mlp_kernels`].
 #[derive(Clone, Debug)]
 pub(crate) struct Affine {
-    /// By [`SUM`] and [`DIFFERENCE`] of outputs and inputs; `None` if zero. In a network with mirror
-    /// symmetry no sum depends on a difference, and no difference on a sum.
+    /// Blocks by [`SUM`] and [`DIFFERENCE`] of outputs and inputs; `None` if zero. In a network with
+    /// mirror symmetry no sum depends on a difference, and no difference on a sum.
     pub weights: [[Option<Mat<f64>>; 2]; 2],
     /// Number of sums and of differences of the inputs; the features are sums.
     pub inputs: [usize; 2],
-    /// Of the sums, then of the differences.
+    /// The biases of the sums, then of the differences.
     pub bias: Vec<f64>,
 }
 

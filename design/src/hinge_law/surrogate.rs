@@ -349,13 +349,22 @@ mod tests {
         let law = tiny();
         let prepared = law.prepare(&[design(18.0, 1.4)]);
         let outside = HingeDeformation::from([9.0, -11.0, 1.4]);
-        let at = |order| prepared.energies(&[outside], order)[0];
-        let [value, first, second] = [Order::Value, Order::Forces, Order::Tangent].map(at);
-        assert_eq!(value, HingeEnergy { w: value.w, ..HingeEnergy::default() });
-        let HingeEnergy { w, forces, .. } = first;
-        assert_eq!(first, HingeEnergy { w, forces, ..HingeEnergy::default() });
-        let HingeEnergy { w, forces, tangent, .. } = second;
-        assert_eq!(second, HingeEnergy { w, forces, tangent, ..HingeEnergy::default() });
+        let numbers = |order| {
+            let HingeEnergy { w, forces, tangent, design, mixed } =
+                prepared.energies(&[outside], order)[0];
+            let mixed = mixed.map(DesignGradient::to_array);
+            let [tangent, mixed] = [&tangent, &mixed].map(|rows| rows.as_flattened());
+            [&[w][..], &forces, tangent, &design.to_array(), mixed].concat()
+        };
+        let all = numbers(Order::Design);
+        for (order, known) in [(Order::Value, 1), (Order::Forces, 4), (Order::Tangent, 13)] {
+            let found = numbers(order);
+            assert!(found[known..].iter().all(|x| *x == 0.0), "{found:?}");
+            // Products of blocks of other sizes differ by rounding.
+            for (found, expected) in zip(&found[..known], &all) {
+                assert!((found / expected - 1.0).abs() < 1e-13, "{found} {expected}");
+            }
+        }
     }
 
     /// On lines from the centre outwards the force that returns a hinge does not fall: no ridge,

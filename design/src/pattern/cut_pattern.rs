@@ -18,7 +18,7 @@ use crate::{
         coordinates::{
             PatternCoordinates, intervals, logistic, partial_sums, partial_sums_pullback, with_ends,
         },
-        grid::{EDGES, Endpoint, Grid},
+        grid::{EDGES, Grid},
     },
 };
 use faer::{
@@ -129,16 +129,6 @@ impl CutPattern {
             return Err(singular());
         }
         Ok(Self { grid, outline, r, tau, points, system })
-    }
-
-    /// x_ij (mm).
-    pub fn x(&self, i: usize, j: usize) -> Point {
-        self.points[self.grid.endpoint(i, j, Endpoint::X)]
-    }
-
-    /// x'_ij (mm).
-    pub fn x_prime(&self, i: usize, j: usize) -> Point {
-        self.points[self.grid.endpoint(i, j, Endpoint::XPrime)]
     }
 
     /// The gradient in (z, ell) and in the outline's corners of a function with the given gradient

@@ -86,7 +86,7 @@ impl Grid {
     }
 
     /// All vertices, row by row.
-    pub fn vertices(&self) -> impl Iterator<Item = (usize, usize)> + use<> {
+    pub(crate) fn vertices(&self) -> impl Iterator<Item = (usize, usize)> + use<> {
         let m = self.m;
         (0..=self.n).flat_map(move |j| (0..=m).map(move |i| (i, j)))
     }
