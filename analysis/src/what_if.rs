@@ -56,47 +56,39 @@ pub fn what_if(
     deployment: &Deployment,
 ) -> Vec<WhatIf> {
     let Some(mechanics) = problem.model.mechanics() else { return Vec::new() };
-    let known = deployment.warm_start();
-    let of = Unchanged { scene, problem, design, deployment, known };
-    let percent = |part: f64| format!("{:.0} %", 100.0 * part);
-    let [less, more] = [-1.0, 1.0];
-    let stresses = [less, more].map(|sign| {
-        let change = format!("all stresses {} {}", percent(STRESS), more_or_less(sign));
-        of.under(change, Conditions { stress: 1.0 + sign * STRESS, ..Conditions::default() })
-    });
-    let thicknesses = [less, more].map(|sign| {
-        let change = format!("the sheet {} {}", percent(THICKNESS), thicker(sign));
-        of.under(change, Conditions { thickness: 1.0 + sign * THICKNESS, ..Conditions::default() })
-    });
-    let cut = stresses.into_iter().chain(thicknesses).chain([of.narrower()]);
-    if !mechanics.solver.fastened().is_empty() {
-        return cut.chain(of.fasteners()).flatten().collect();
-    }
-    if !scene.config.has_loads() || scene.config.drive.is_some() {
+    let is_mounted = !mechanics.solver.fastened().is_empty();
+    if !is_mounted && (!scene.config.has_loads() || scene.config.drive.is_some()) {
         return Vec::new();
     }
-    let loads = [less, more].map(|sign| {
-        let change = format!("the loads {} {}", percent(LOADS), more_or_less(sign));
-        let scaled = |load: &[f64; 3]| load.map(|component| (1.0 + sign * LOADS) * component);
+    let known = deployment.warm_start();
+    let of = Unchanged { scene, problem, design, deployment, known };
+    let scaled = |what: &str, part: f64, words: [&str; 2], under: &dyn Fn(f64) -> Conditions| {
+        [(words[0], 1.0 - part), (words[1], 1.0 + part)].map(|(word, factor)| {
+            let change = format!("{what} {:.0} % {word}", 100.0 * part);
+            of.row(change, problem.under(&under(factor)).ok(), design)
+        })
+    };
+    let others = Conditions::default;
+    let stresses = scaled("all stresses", STRESS, ["lower", "higher"], &|stress| Conditions {
+        stress,
+        ..others()
+    });
+    let thicknesses = scaled("the sheet", THICKNESS, ["thinner", "thicker"], &|thickness| {
+        Conditions { thickness, ..others() }
+    });
+    let cut = stresses.into_iter().chain(thicknesses).chain([of.narrower()]);
+    if is_mounted {
+        return cut.chain(of.fasteners()).flatten().collect();
+    }
+    let loads = scaled("the loads", LOADS, ["lower", "higher"], &|factor| {
+        let scaled = |load: &[f64; 3]| load.map(|component| factor * component);
         let loads = mechanics.solver.loads().iter().map(scaled).collect();
-        of.under(change, Conditions { loads: Some(loads), ..Conditions::default() })
+        Conditions { loads: Some(loads), ..others() }
     });
     loads.into_iter().chain(cut).flatten().collect()
 }
 
-fn more_or_less(sign: f64) -> &'static str {
-    if sign < 0.0 { "lower" } else { "higher" }
-}
-
-fn thicker(sign: f64) -> &'static str {
-    if sign < 0.0 { "thinner" } else { "thicker" }
-}
-
 impl Unchanged<'_> {
-    fn under(&self, change: String, conditions: Conditions) -> Option<WhatIf> {
-        self.row(change, self.problem.under(&conditions).ok(), self.design)
-    }
-
     /// Ligaments that are narrower, as by a wider kerf.
     fn narrower(&self) -> Option<WhatIf> {
         let WidthChart { w_minus, w_plus } = self.problem.widths;

@@ -185,11 +185,16 @@ fn weights_are_tested_on_the_spot_check(work: &Workplace) {
     let shipped = test.replace("runs/demo/surrogate.safetensors", SHIPPED_WEIGHTS);
     let page = work.output(&shipped);
     assert_contains(&page, &tested);
-    assert_contains(&page, &["W within 5 %"]);
+    assert_contains(&page, &["W, relative to its own value"]);
     assert_eq!(card()["spot_check"], Value::Null);
     assert_contains(&work.output(&format!("{test} --record")), &tested);
     assert_eq!(card()["spot_check"]["errors"]["rows"], 12);
     assert_eq!(card()["spot_check"]["tier"], "tiny");
+    // The hinges of the designed sheet are solved along their paths.
+    let visited = work.output("surrogate visited runs/visited runs/demo/design");
+    assert_contains(&visited, &["tested on tier tiny, 12 rays", "of 60 states inside"]);
+    let again = test.replace("runs/demo/spot-check", "runs/visited/visited");
+    assert_eq!(work.output(&again), visited);
     // No ray of the spot check is in the database.
     let [rays, spot] = ["hinges", "spot-check"].map(|name| {
         let database = Database::read(&work.path(&format!("runs/demo/{name}.parquet"))).unwrap();

@@ -1,10 +1,11 @@
 //! The hinges of a deployed sheet, solved by finite elements along their paths in it.
 
 use crate::verification_error::VerificationError;
+use crate::visited::hinge_path;
 use dataset::Fidelity;
 use design::objective::design_problem::Deployment;
-use fe_driver::{DeformationPath, HingePath, SolveService, WindowProblem, WindowSolve};
-use hinge::{HingeDeformation, HingeSample, SheetMaterial};
+use fe_driver::{SolveService, WindowProblem, WindowSolve};
+use hinge::{HingeSample, SheetMaterial};
 use mesher::Tier;
 use serde::Serialize;
 use support::{Fault, fault};
@@ -48,15 +49,12 @@ impl ElementWindows<'_> {
         material: &SheetMaterial,
     ) -> Result<SolvedPaths, VerificationError> {
         let versions = self.service.versions();
-        let designs = deployment.sheet.designs().into_iter().enumerate();
-        let solves = designs.map(|(hinge, design)| {
-            let states = deployment.path.iter().map(|step| step.deformations[hinge]);
-            let path = DeformationPath::through(&states.collect::<Vec<HingeDeformation>>());
-            let path = path.ok_or_else(|| fault!("hinge {hinge} has no states"))?;
-            let problem = WindowProblem::new(HingePath { design, path }, material, self.tier);
-            Ok::<_, VerificationError>(WindowSolve::new(problem, &versions))
+        let hinges = 0..deployment.final_step().deformations.len();
+        let solves = hinges.map(|hinge| {
+            let problem = WindowProblem::new(hinge_path(deployment, hinge)?, material, self.tier);
+            Ok(WindowSolve::new(problem, &versions))
         });
-        let solves: Vec<WindowSolve> = solves.collect::<Result<_, _>>()?;
+        let solves: Vec<WindowSolve> = solves.collect::<Result<_, Fault>>()?;
         let mut solved = SolvedPaths::default();
         for (hinge, window) in self.service.solve(&solves)?.into_iter().enumerate() {
             solved.cpu_seconds += window.record.cpu_seconds;

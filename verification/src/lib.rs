@@ -8,6 +8,7 @@
 //! | a design searched for with finite elements for its hinges | [`final_design`] |
 //! | the whole sheet, its panels rigid or meshed | [`SheetTask`], [`SheetCheck`] |
 //! | errors of weights at random states | [`spot_check`], [`SpotStates`] |
+//! | the hinges of designed sheets along their paths | [`visited_paths`] |
 //! | rays of a campaign solved in rounds until weights are accurate | [`Learning`] |
 //!
 //! Windows are solved by a [`SolveService`](fe_driver::SolveService). One that fails ends no task:
@@ -56,6 +57,7 @@ mod sheet_errors;
 mod sheet_page;
 mod sheet_task;
 mod verification_error;
+mod visited;
 mod whole_sheet;
 
 pub use balanced_sheet::{
@@ -72,4 +74,5 @@ pub use sheet_check::{HingeCheck, PanelCheck, SheetCheck, StateCheck};
 pub use sheet_errors::SheetErrors;
 pub use sheet_task::SheetTask;
 pub use verification_error::{VerificationError, every_ray_failed};
+pub use visited::visited_paths;
 pub use whole_sheet::{SheetCost, usual_sheet_tier};

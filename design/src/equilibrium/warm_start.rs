@@ -89,15 +89,11 @@ impl EquilibriumSolver {
         Some(path)
     }
 
-    /// The [load steps](Self::load_steps_at) of a sheet near another one, whose load steps at the
-    /// same parameters are `known`; `None` as for a path.
-    pub fn load_steps_near(
-        &self,
-        sheet: HingedSheet,
-        parameters: &[f64],
-        known: &WarmStart,
-    ) -> Option<Vec<LoadStep>> {
-        self.steps_near(sheet, PathStage::Actuation, parameters, &known.designs, &known.steps)
+    /// The state at full load of a sheet near another one, whose last known state is there; `None`
+    /// as for a path.
+    pub fn end_near(&self, sheet: HingedSheet, known: &WarmStart) -> Option<Vec<LoadStep>> {
+        let last = known.steps.last_chunk::<1>()?;
+        self.steps_near(sheet, PathStage::Actuation, &[1.0], &known.designs, last)
     }
 
     /// A stable equilibrium at full load next to the last state of a known path: where Newton's

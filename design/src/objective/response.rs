@@ -118,16 +118,16 @@ impl DesignProblem {
         })
     }
 
-    /// The equilibrium of a design at full load, corrected from the `known` one of another design
-    /// or under other conditions if that is near enough, or else at the end of the path from the
-    /// flat sheet.
+    /// The equilibrium of a design at full load, corrected from the last of the `known` ones of
+    /// another design or under other conditions if that is near enough, or else at the end of the
+    /// path from the flat sheet.
     pub fn response(
         &self,
         design: &DesignVector,
         known: Option<&WarmStart>,
     ) -> Result<Response, DesignError> {
         self.responded(design, |solver, hinged| {
-            let near = known.and_then(|known| solver.load_steps_near(hinged, &FULL_LOAD, known));
+            let near = known.and_then(|known| solver.end_near(hinged, known));
             let followed = near.is_none();
             (near.unwrap_or_else(|| solver.load_steps_at(hinged, &FULL_LOAD)), followed)
         })

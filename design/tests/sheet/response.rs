@@ -151,6 +151,8 @@ fn a_known_configuration_gives_the_same_response() {
     for scene in SCENES {
         let (problem, design) = problem(scene);
         let response = problem.response(&design, None).unwrap();
+        let path = problem.deploy(&design).unwrap().warm_start();
+        assert!(!problem.response(&design, Some(&path)).unwrap().deployment.followed);
         let configuration = &response.state().configuration;
         let again = problem.response_at(&design, configuration).unwrap();
         assert_eq!(again.corners(), response.corners());

@@ -67,10 +67,10 @@ impl WindowSolve {
     }
 
     /// Hash of the settings that all solves of a campaign share, except the material: mesh,
-    /// increments, programs.
+    /// increments, programs. A path that turns back has the same ones.
     pub fn settings_hash(&self) -> String {
-        let WindowProblem { tier, step, .. } = &self.problem;
-        short_hash(&(tier, &self.mesh, step, &self.tools, self.recipe_version))
+        let problem = &self.problem;
+        short_hash(&(problem.tier, &self.mesh, &problem.step, &self.tools, RECIPE_VERSION))
     }
 
     /// Names of the settings that differ from `other`; empty if only the hinge and its path differ.

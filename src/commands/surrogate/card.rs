@@ -21,18 +21,14 @@ impl CardCommand {
         let surrogate = Surrogate::load(&self.weights)?;
         let card = surrogate.card();
         println!("material {}, tier {}", card.material, card.tier);
-        let known = |hash: &Option<String>| hash.clone().unwrap_or_else(|| "not known".into());
-        println!("material law      {}", known(&card.material_hash));
-        println!("campaign settings {}", known(&card.settings_hash));
         println!("database {}", card.dataset_hash);
-        println!("split    {}", card.split_hash);
         if let Some(base) = &card.fine_tuned_from {
             println!("fine-tuned from weights {base}");
         }
         for Teacher { weights, fine_tuned_from } in
             (card.distillation.iter()).flat_map(|distillation| &distillation.teachers)
         {
-            let from = known(fine_tuned_from);
+            let from = fine_tuned_from.as_deref().unwrap_or("not known");
             println!("distilled from weights {weights}, fine-tuned from {from}");
         }
         let hinge = card.hinge;
