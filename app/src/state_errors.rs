@@ -22,9 +22,8 @@ pub fn print_errors(surrogate: &Surrogate, database: &Database) {
     if !inside.is_empty() {
         println!("{}", distribution(&Parity::new(surrogate, &inside).states));
     }
-    match ErrorInterval::of(surrogate, rows) {
-        Some([w, forces]) => println!("all states: W {w}; forces {forces}"),
-        None => println!("all states: too few for an interval"),
+    if let Some([w, forces]) = ErrorInterval::of(surrogate, rows) {
+        println!("all states: W {w}; forces {forces}");
     }
 }
 

@@ -187,18 +187,20 @@ impl MeshRows {
     }
 }
 
-/// Whether a ray bends like the free turn of a plate; `None` if it turns too little to tell. Both
+/// Whether a ray bends like the free turn of a plate; `None` if it turns too little to tell, or if
+/// it is another path, on which theta does not grow in proportion. Both
 /// ends of its rows lie on one line in (lambda, eta_a / lambda), whose slope is the curvature times
 /// theta^2.
 fn bends(ray: &[Row]) -> Option<bool> {
     const LEAST_TURN: f64 = 0.1; // rad
     let (first, last) = (&ray.first()?.sample, &ray.last()?.sample);
     let lambdas = last.lambda - first.lambda;
-    if lambdas <= 0.0 || last.theta.abs() < LEAST_TURN {
+    let turn = last.theta / last.lambda;
+    let off = first.theta - turn * first.lambda;
+    if lambdas <= 0.0 || last.theta.abs() < LEAST_TURN || off.abs() > 1e-4 {
         return None;
     }
     let slope = (last.a / last.lambda - first.a / first.lambda) / lambdas / ray[0].design.w_lig;
-    let turn = last.theta / last.lambda;
     let [_, of_free_turn] = Regime::Plate.free_opening();
     Some(slope / (turn * turn.abs()) > 0.5 * of_free_turn)
 }

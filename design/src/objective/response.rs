@@ -129,7 +129,7 @@ impl DesignProblem {
         self.responded(design, |solver, hinged| {
             let near = known.and_then(|known| solver.end_near(hinged, known));
             let followed = near.is_none();
-            (near.unwrap_or_else(|| solver.load_steps_at(hinged, &FULL_LOAD)), followed)
+            (near.unwrap_or_else(|| solver.load_steps_at(hinged, &[1.0])), followed)
         })
     }
 
@@ -232,9 +232,6 @@ impl DesignProblem {
         })
     }
 }
-
-/// The load parameter of the response.
-const FULL_LOAD: [f64; 1] = [1.0];
 
 /// The derivative of (F_a, F_s, M_theta) in the logarithm of the thickness: with all lengths in
 /// proportion F_a and F_s grow with its square and M_theta with its cube.
