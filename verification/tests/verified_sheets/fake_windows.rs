@@ -10,10 +10,9 @@ use design::objective::design_problem::Deployment;
 use design::pattern::design_vector::DesignVector;
 use fake_solver::{FakeSolver, Fault};
 use fe_driver::{
-    Campaign, DrawnStates, RunOptions, Shard, Solution, SolveError, SolveService, SolveStore,
-    Solver, ToolVersions, WindowSolve, random_paths, run,
+    Campaign, RunOptions, Shard, Solution, SolveError, SolveService, SolveStore, Solver,
+    ToolVersions, WindowSolve, random_paths, run,
 };
-use hinge::Regime;
 use mesher::Tier;
 use scene::run_inputs::scene_file;
 use scene::{Level, LinearConstants, Scene, SceneConfig};
