@@ -1,11 +1,11 @@
 //! Errors of weights at given states against finite elements.
 
 use anyhow::Result;
-use dataset::{COMPARED, ComparedState, Database, Row, reference_rms};
+use dataset::{COMPARED, ComparedState, Database, reference_rms};
 use std::path::Path;
 use support::table::Table;
 use surrogate::Surrogate;
-use train::{ErrorInterval, Parity, spot_check};
+use train::{ErrorInterval, Parity, inside, spot_check};
 
 /// Prints the errors of weights at the states of a database that lie inside the training domain.
 pub fn print_errors(surrogate: &Surrogate, database: &Database) {
@@ -16,14 +16,14 @@ pub fn print_errors(surrogate: &Surrogate, database: &Database) {
         manifest.tier,
         manifest.rays
     );
-    let inside = |row: &&Row| surrogate.contains(&row.design, &row.sample.deformation());
-    let inside: Vec<Row> = rows.iter().filter(inside).cloned().collect();
+    let inside = inside(surrogate, rows);
     println!("{} of {} states inside the training domain\n", inside.len(), rows.len());
     if !inside.is_empty() {
         println!("{}", distribution(&Parity::new(surrogate, &inside).states));
     }
-    if let Some([w, forces]) = ErrorInterval::of(surrogate, rows) {
-        println!("all states: W {w}; forces {forces}");
+    match ErrorInterval::of(surrogate, rows) {
+        Some([w, forces]) => println!("all states: W {w}; forces {forces}"),
+        None => println!("all states: too few for an interval"),
     }
 }
 

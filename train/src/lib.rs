@@ -37,4 +37,4 @@ pub use error_interval::ErrorInterval;
 pub use fine_tuning::check_pretrained;
 pub use state::Epoch;
 pub use training::{Start, Trained, Training, train};
-pub use validation::{Parity, spot_check};
+pub use validation::{Parity, inside, spot_check};

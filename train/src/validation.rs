@@ -20,14 +20,15 @@ pub struct Parity {
     pub states: Vec<ComparedState>,
 }
 
+/// The rows inside the training domain of a surrogate.
+pub fn inside(surrogate: &Surrogate, rows: &[Row]) -> Vec<Row> {
+    let inside = |row: &&Row| surrogate.contains(&row.design, &row.sample.deformation());
+    rows.iter().filter(inside).cloned().collect()
+}
+
 /// The errors of a surrogate at random states on windows of a mesh tier, for its card.
 pub fn spot_check(surrogate: &Surrogate, rows: &[Row], tier: &str) -> SpotCheck {
-    let domain = surrogate.domain();
-    let inside: Vec<Row> = rows
-        .iter()
-        .filter(|row| domain.contains(&row.design, &row.sample.deformation()))
-        .cloned()
-        .collect();
+    let inside = inside(surrogate, rows);
     let widths = inside.iter().map(|row| row.design.w_lig);
     SpotCheck {
         errors: Parity::new(surrogate, rows).errors(),

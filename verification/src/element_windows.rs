@@ -49,9 +49,10 @@ impl ElementWindows<'_> {
         material: &SheetMaterial,
     ) -> Result<SolvedPaths, VerificationError> {
         let versions = self.service.versions();
-        let hinges = 0..deployment.final_step().deformations.len();
-        let solves = hinges.map(|hinge| {
-            let problem = WindowProblem::new(hinge_path(deployment, hinge)?, material, self.tier);
+        let designs = deployment.sheet.designs().into_iter().enumerate();
+        let solves = designs.map(|(hinge, design)| {
+            let hinge = hinge_path(deployment, hinge, design)?;
+            let problem = WindowProblem::new(hinge, material, self.tier);
             Ok(WindowSolve::new(problem, &versions))
         });
         let solves: Vec<WindowSolve> = solves.collect::<Result<_, Fault>>()?;

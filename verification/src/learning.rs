@@ -14,7 +14,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 use support::table::{Cell, Columns, Table};
 use surrogate::{SpotCheck, Surrogate};
-use train::{ErrorInterval, spot_check};
+use train::{ErrorInterval, inside, spot_check};
 
 /// What is solved, and when it is enough.
 #[derive(Clone, Copy)]
@@ -161,9 +161,7 @@ impl<'a> Learning<'a> {
     ) -> Result<(LearningRound, Surrogate), VerificationError> {
         let task = &self.task;
         let tally = status(task.folder)?.tally;
-        let inside = |row: &&Row| weights.contains(&row.design, &row.sample.deformation());
-        let inside: Vec<Row> = task.spot.iter().filter(inside).cloned().collect();
-        let intervals = ErrorInterval::of(&weights, &inside);
+        let intervals = ErrorInterval::of(&weights, &inside(&weights, task.spot));
         let round = LearningRound {
             rays: tally.closed(),
             complete: tally.complete,

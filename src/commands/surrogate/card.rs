@@ -21,6 +21,7 @@ impl CardCommand {
         let surrogate = Surrogate::load(&self.weights)?;
         let card = surrogate.card();
         println!("material {}, tier {}", card.material, card.tier);
+        println!("database {}", card.dataset_hash);
         if let Some(base) = &card.fine_tuned_from {
             println!("fine-tuned from weights {base}");
         }

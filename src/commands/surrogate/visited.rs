@@ -21,7 +21,7 @@ pub(crate) struct VisitedCommand {
     /// Folder for the states and the solutions
     #[arg(value_name = "FOLDER")]
     out: PathBuf,
-    /// Folders of runs, or scenes, with the same weights
+    /// Folders of runs, or scenes, with the same weights and thickness
     #[arg(value_name = "RUN", required = true)]
     runs: Vec<PathBuf>,
 }
@@ -35,9 +35,15 @@ impl VisitedCommand {
         }
         let first = &runs[0].1;
         let weights = first.surrogate().context("the first scene reads no weights")?;
-        let hash = |scene: &Scene| scene.surrogate().map(|weights| weights.hash());
+        let solved = |scene: &Scene| {
+            (scene.surrogate().map(|weights| weights.hash()), scene.material.thickness)
+        };
         for ((_, scene), run) in runs.iter().zip(&self.runs) {
-            ensure!(hash(scene) == hash(first), "{} has other weights", run.display());
+            ensure!(
+                solved(scene) == solved(first),
+                "{} has other weights or another thickness",
+                run.display()
+            );
         }
         let of_check = weights.card().spot_check.as_ref();
         let of_check = of_check.and_then(|check| check.tier.as_ref()?.parse().ok());
