@@ -31,8 +31,8 @@ use support::vectors::dot;
 /// Maximum distance of an equilibrium from the equilibrium of the linearised law (rad, or panel
 /// sizes for hinge translations).
 const NEARBY: f64 = 0.02;
-/// Difference of the stroke of a known state from that at its load parameter, relative to the
-/// whole, that rounding may cause.
+/// Motion of the panels of a known state to the supports and the stroke at its load parameter,
+/// relative to their largest motion, that rounding may cause.
 const ROUNDED: f64 = 1e-9;
 
 /// The equilibrium path of a sheet.
@@ -157,21 +157,17 @@ impl Branch<'_> {
         (step.status != Status::Almost).then_some(step)
     }
 
-    /// Moves a known state to the stroke at its load parameter, which loads in another direction
-    /// change.
-    fn hold_stroke(&self, position: &mut PathPoint) {
-        let Some((stroke, full)) = &self.solver.drive else {
-            return;
-        };
-        let target = match self.stage {
-            PathStage::Weight => 0.0,
-            PathStage::Actuation => position.at * full,
-        };
-        let pattern = &self.solver.pattern;
-        let short = target - stroke.of(&pattern.gather(&position.configuration));
-        if short.abs() > ROUNDED * full.abs() {
-            let motion = pattern.spread(&stroke.motion(short));
-            position.configuration = moved(&position.configuration, &motion, 1.0);
+    /// Moves a known state to the supports and the stroke at its load parameter, which other places
+    /// of fasteners and loads in another direction change.
+    fn hold_at(&self, position: &mut PathPoint) {
+        let configuration = vec![[0.0; 3]; position.configuration.len()];
+        let mut held = position.clone();
+        self.hold(&mut held, &PathPoint { at: 0.0, configuration, forces: Vec::new() });
+        let motion = moved(&held.configuration, &position.configuration, -1.0);
+        let [motion, size] = [&motion, &position.configuration]
+            .map(|of| of.as_flattened().iter().fold(0.0, |most: f64, x| most.max(x.abs())));
+        if motion > ROUNDED * size {
+            *position = held;
         }
     }
 
@@ -193,7 +189,7 @@ impl Branch<'_> {
             configuration: known.configuration.clone(),
             forces: known.hinges.iter().map(|hinge| hinge.forces).collect(),
         };
-        self.hold_stroke(&mut start);
+        self.hold_at(&mut start);
         let found = branch.close(start, None, f64::INFINITY).ok();
         self.effort.iterations += branch.effort.iterations;
         self.effort.factorisations += branch.effort.factorisations;
