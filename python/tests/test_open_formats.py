@@ -54,9 +54,10 @@ def test_the_shipped_databases_are_filtered_by_number_and_by_text(path):
     parquet = pytest.importorskip("pyarrow.parquet")
     duckdb = pytest.importorskip("duckdb")
     whole = pandas.read_parquet(path)
-    tier = whole.tier.iloc[0]
+    # States on the paths of sheets do not open as far as rays: half of the states of each file.
+    tier, theta = whole.tier.iloc[0], float(whole.theta.median())
     for column, sign, value, expected in [
-        ("theta", ">", 0.5, (whole.theta > 0.5).sum()),
+        ("theta", ">", theta, (whole.theta > theta).sum()),
         ("tier", "==", tier, (whole.tier == tier).sum()),
     ]:
         assert expected > 0
