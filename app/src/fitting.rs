@@ -50,19 +50,15 @@ pub fn expected(fit: &FittedScene, thickness: f64) -> String {
 
 /// How many fasteners hold the sheet, and why so many.
 fn fastened(held: &Held) -> String {
-    let Held { count, off, force, of_borne, margin, .. } = held;
-    let [off, borne] = [off, of_borne].map(|part| 100.0 * part);
+    let Held { count, force, of_borne, peak_damage, margin, .. } = held;
+    let [off, borne] = [held.unevenness(), *of_borne].map(|part| 100.0 * part);
     let margin = margin.map_or(String::new(), |margin| {
         format!("; between them panels stay in the plane up to {margin:.1} times the forces")
     });
-    let enough = if held.suffices() {
-        ", the fewest of 3, 4, 6, 8, 12, 16 and 24 that suffice"
-    } else {
-        ", and none of 3 to 24 suffices"
-    };
+    let enough = if held.suffices() { "" } else { " best, and more do not suffice" };
     format!(
         "{count} fasteners hold it{enough}: panels {off:.2} % of the longer side from the even opening (root mean square), \
-         {force:.0} N a fastener, {borne:.0} % of what its hole bears{margin}"
+         {force:.0} N a fastener, {borne:.0} % of what its hole bears, {peak_damage:.2} of the damage at which a ligament tears{margin}"
     )
 }
 

@@ -1,6 +1,7 @@
 //! The cells of a sheet: which voids of its pattern are kept, and the shapes of the panels that are
 //! trimmed.
 
+use crate::drawn_target::rounded;
 use design::{
     geometry::polygon::{area, self_crossing},
     pattern::grid::Grid,
@@ -55,7 +56,7 @@ impl From<&Topology> for CellsConfig {
             voids: (1..n).rev().map(row).collect(),
             trimmed: shapes
                 .filter_map(|(number, (panel, trim))| {
-                    let corners = trim.as_ref()?.to_vec();
+                    let corners = trim.as_ref()?.iter().map(|at| at.map(rounded)).collect();
                     Some(TrimmedPanel { panel: *panel, corners, outer: outer(number) })
                 })
                 .collect(),

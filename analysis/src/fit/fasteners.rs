@@ -5,14 +5,18 @@ use crate::out_of_plane::Stability;
 use design::equilibrium::warm_start::WarmStart;
 use design::geometry::polygon::{bounds, distance, distance_to_outline, size};
 use design::geometry::region::Region;
+use design::hinge_law::DamageMeasure;
+use design::objective::terms::damage::NEARLY_TORN;
 use design::sheet::kinematics::deployed;
 use design::sheet::topology::Topology;
 use scene::Scene;
 use std::collections::VecDeque;
 use support::statistics::rms_and_maximum;
 
-/// Numbers of fasteners that are tried.
-pub(super) const COUNTS: [usize; 7] = [3, 4, 6, 8, 12, 16, 24];
+/// Number of fasteners that a sheet begins with.
+pub(super) const FIRST: usize = 3;
+/// Largest number of fasteners.
+pub const AT_MOST: usize = 24;
 /// Distance of the panels from the even opening over the longer side of the sheet, root mean square,
 /// up to which fasteners suffice.
 const EVEN: f64 = 0.002;
@@ -26,17 +30,19 @@ const ROOM: f64 = 0.15;
 pub(super) const HOLE: f64 = 4.2;
 
 /// How fasteners hold a sheet.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Held {
     /// Number of fasteners.
     pub count: usize,
-    /// Distance of the middles of the panels from the even opening over the longer side of the
-    /// sheet, root mean square.
-    pub off: f64,
+    /// Distances of the middles of the panels from the even opening, over the longer side of the
+    /// sheet.
+    pub off: Vec<f64>,
     /// Largest force of a fastener (N).
     pub force: f64,
     /// Part of the force that the edge of its hole bears.
     pub of_borne: f64,
+    /// Largest D_peak of a ligament of the opened sheet; 0 for a law that predicts none.
+    pub peak_damage: f64,
     /// Margin of the panels against leaving the plane; `None` if it is not known, and where too few
     /// fasteners hold the sheet in the plane.
     pub margin: Option<f64>,
@@ -57,16 +63,19 @@ impl Held {
         let response = problem.draft(&scene.start(), Some(known)).ok()?;
         let panels = &response.deployment.sheet.panels;
         let end = &response.state().configuration;
-        let off = (panels.iter().enumerate())
-            .map(|(k, panel)| distance(deployed(panel, end[k], flat[k]), even[k]));
         let [width, height] = size(bounds(even.iter().copied()));
         let side = f64::max(width, height);
+        let off = (panels.iter().enumerate())
+            .map(|(k, panel)| distance(deployed(panel, end[k], flat[k]), even[k]) / side);
         let force = response.reactions.iter().map(|[x, y, _]| x.hypot(*y)).fold(0.0, f64::max);
+        let damage = response.state().damage.iter();
+        let peaks = damage.filter_map(|damage| DamageMeasure::Peak.known(damage));
         let mut held = Self {
             count: scene.config.supports.len(),
-            off: rms_and_maximum(off)[0] / side,
+            off: off.collect(),
             force,
             of_borne: force / borne_by_hole(&scene.material, HOLE),
+            peak_damage: peaks.fold(0.0, f64::max),
             margin: None,
             leaves_domain: false,
         };
@@ -81,60 +90,88 @@ impl Held {
 
     /// Whether more fasteners are not needed.
     pub fn suffices(&self) -> bool {
+        let bears = self.of_borne < 1.0 && self.peak_damage < NEARLY_TORN;
         let stays = self.margin.is_none_or(|margin| margin >= MARGIN);
-        self.off < EVEN && self.of_borne < 1.0 && stays && !self.leaves_domain
+        self.unevenness() < EVEN && bears && stays && !self.leaves_domain
+    }
+
+    /// Distance of the panels from the even opening over the longer side of the sheet, root mean
+    /// square.
+    pub fn unevenness(&self) -> f64 {
+        rms_and_maximum(self.off.iter().copied())[0]
     }
 }
 
-/// Panels far from each other along the sheet, in the order in which they are fastened.
-pub(super) fn fastened(topology: &Topology, count: usize) -> Vec<usize> {
-    let mut neighbours = vec![Vec::new(); topology.panel_count()];
-    for site in &topology.sites {
-        let [a, b] = [site.a.0, site.b.0];
-        neighbours[a].push(b);
-        neighbours[b].push(a);
+/// Panels at which a sheet can be fastened.
+pub(super) struct Candidates<'a> {
+    topology: &'a Topology,
+    /// The panels that hang at each panel.
+    neighbours: Vec<Vec<usize>>,
+    /// The panels with room for a hole.
+    panels: Vec<usize>,
+}
+
+impl<'a> Candidates<'a> {
+    pub(super) fn new(topology: &'a Topology) -> Self {
+        let mut neighbours = vec![Vec::new(); topology.panel_count()];
+        for site in &topology.sites {
+            let [a, b] = [site.a.0, site.b.0];
+            neighbours[a].push(b);
+            neighbours[b].push(a);
+        }
+        let has_room = |panel: &usize| {
+            topology.trims[*panel].as_ref().is_none_or(|trim| {
+                let room = distance_to_outline(MIDDLE, trim);
+                room > ROOM && Region::union_of(vec![trim.to_vec()]).contains(MIDDLE)
+            })
+        };
+        let panels = (0..topology.panel_count()).filter(has_room).collect();
+        Self { topology, neighbours, panels }
     }
-    // The numbers of hinges on the shortest way from a panel to the nearest of some.
-    let steps_from = |some: &[usize]| {
-        let mut steps = vec![usize::MAX; neighbours.len()];
+
+    /// Some panels far from each other along the sheet; fewer if there are fewer.
+    pub(super) fn spread(&self, count: usize) -> Vec<usize> {
+        let mut some: Vec<usize> = self.farthest(&[0]).into_iter().collect();
+        while some.len() < count.min(self.panels.len()) {
+            some.extend(self.farthest(&some));
+        }
+        some
+    }
+
+    /// The panel that is the most hinges away from all of some.
+    pub(super) fn farthest(&self, some: &[usize]) -> Option<usize> {
+        let mut steps = vec![usize::MAX; self.neighbours.len()];
         some.iter().for_each(|panel| steps[*panel] = 0);
         let mut queue = VecDeque::from(some.to_vec());
         while let Some(panel) = queue.pop_front() {
-            for &next in &neighbours[panel] {
+            for &next in &self.neighbours[panel] {
                 if steps[next] == usize::MAX {
                     steps[next] = steps[panel] + 1;
                     queue.push_back(next);
                 }
             }
         }
-        steps
-    };
-    let has_room = |panel: &usize| {
-        topology.trims[*panel].as_ref().is_none_or(|trim| {
-            let room = distance_to_outline(MIDDLE, trim);
-            room > ROOM && Region::union_of(vec![trim.to_vec()]).contains(MIDDLE)
-        })
-    };
-    let panels: Vec<usize> = (0..topology.panel_count()).filter(has_room).collect();
-    let farthest = |some: &[usize]| {
-        let steps = steps_from(some);
         // Several hinges share the force of a fastener.
-        let far = |panel: &usize| (steps[*panel], neighbours[*panel].len());
-        panels.iter().copied().max_by_key(far).unwrap_or_default()
-    };
-    let mut chosen = vec![farthest(&[0])];
-    while chosen.len() < count.min(panels.len()) {
-        chosen.push(farthest(&chosen));
+        let far = |panel: &usize| (steps[*panel], self.neighbours[*panel].len());
+        self.panels.iter().copied().max_by_key(far)
     }
-    // The two farthest apart open the sheet.
-    let apart = |[one, other]: &[usize; 2]| {
-        let [from, to] = [one, other].map(|it| topology.places[chosen[*it]]);
-        from[0].abs_diff(to[0]).pow(2) + from[1].abs_diff(to[1]).pow(2)
-    };
-    let pairs = (0..chosen.len()).flat_map(|other| (0..other).map(move |one| [one, other]));
-    if let Some([one, other]) = pairs.max_by_key(apart) {
-        chosen.swap(0, one);
-        chosen.swap(1, other);
+
+    /// The panel that is farthest from the even opening, where it is `off` by so much.
+    pub(super) fn most_off(&self, off: &[f64]) -> Option<usize> {
+        self.panels.iter().copied().max_by(|a, b| off[*a].total_cmp(&off[*b]))
     }
-    chosen
+
+    /// Some panels, the two farthest apart first: they open the sheet.
+    pub(super) fn in_order(&self, mut some: Vec<usize>) -> Vec<usize> {
+        let apart = |[one, other]: &[usize; 2]| {
+            let [from, to] = [one, other].map(|it| self.topology.places[some[*it]]);
+            from[0].abs_diff(to[0]).pow(2) + from[1].abs_diff(to[1]).pow(2)
+        };
+        let pairs = (0..some.len()).flat_map(|other| (0..other).map(move |one| [one, other]));
+        if let Some([one, other]) = pairs.max_by_key(apart) {
+            some.swap(0, one);
+            some.swap(1, other);
+        }
+        some
+    }
 }

@@ -3,7 +3,7 @@
 
 use crate::fit::even_pattern::Opening;
 use crate::fit::even_sheet::{EvenSheet, THOROUGH, growth};
-use crate::fit::fasteners::{COUNTS, HOLE, Held, fastened};
+use crate::fit::fasteners::{AT_MOST, Candidates, FIRST, HOLE, Held};
 use crate::fit::lost::{Lost, kept_by, lost};
 use crate::fit::opening::{free_axial_opening, safe_opening};
 use crate::fit::trimmed::{Limits, TOLERANCE};
@@ -141,8 +141,9 @@ fn largest(target: &Region, limits: Limits) -> Option<EvenSheet> {
     })
 }
 
-/// The keys of the scene with as few fasteners as suffice, and how they hold the sheet; if none
-/// suffice, with those that hold its panels best.
+/// The keys of the scene with fasteners, one after the other where panels are farthest from the even
+/// opening until they suffice, and how they hold the sheet; if none suffice, with those that hold
+/// its panels best.
 fn fasten(
     scene: &Scene,
     sheet: &EvenSheet,
@@ -151,7 +152,10 @@ fn fasten(
 ) -> (SceneConfig, Option<Held>) {
     let laid = LaidSheet::new(sheet, topology, side);
     let [flat, even] = [0.0, laid.opened].map(|opened| laid.middles(opened));
-    let most = laid.keys(scene, sheet, &fastened(topology, COUNTS[COUNTS.len() - 1]));
+    let candidates = Candidates::new(topology);
+    let keys = |some: &[usize]| laid.keys(scene, sheet, &candidates.in_order(some.to_vec()));
+    let mut spread = candidates.spread(AT_MOST);
+    let most = keys(&spread);
     // The sheet with the most fasteners is nearest to its even opening.
     let known = || {
         let scene = scene.changed(most.clone()).ok()?;
@@ -159,20 +163,27 @@ fn fasten(
         Some(response.deployment.warm_start())
     };
     let Some(known) = known() else { return (most, None) };
+    spread.truncate(FIRST);
+    let mut fastened = spread;
     let mut best: Option<(SceneConfig, Held)> = None;
-    for count in COUNTS {
-        let config = laid.keys(scene, sheet, &fastened(topology, count));
+    loop {
+        let config = keys(&fastened);
         // A sheet that is refused is not balanced: what is seen of its target says more.
         let changed = scene.changed(config.clone()).ok();
-        let Some(held) = changed.and_then(|scene| Held::of(&scene, &flat, &even, &known)) else {
-            continue;
+        let held = changed.and_then(|scene| Held::of(&scene, &flat, &even, &known));
+        let (next, suffices) = match &held {
+            Some(held) => (candidates.most_off(&held.off), held.suffices()),
+            None => (candidates.farthest(&fastened), false),
         };
-        let suffices = held.suffices();
-        if suffices || best.as_ref().is_none_or(|(_, best)| held.off < best.off) {
+        let better = |best: &Held, held: &Held| held.unevenness() < best.unevenness();
+        if let Some(held) = held
+            && (suffices || best.as_ref().is_none_or(|(_, best)| better(best, &held)))
+        {
             best = Some((config, held));
         }
-        if suffices {
-            break;
+        match next {
+            Some(next) if !suffices && fastened.len() < AT_MOST => fastened.push(next),
+            _ => break,
         }
     }
     best.map_or((most, None), |(config, held)| (config, Some(held)))

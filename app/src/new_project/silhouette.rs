@@ -3,11 +3,11 @@
 
 use crate::{
     fitting::fit_to_target,
-    new_project::edited::{heading, set},
+    new_project::edited::{heading, set, without_places},
 };
 use anyhow::{Context, Result};
 use scene::{Scene, SceneConfig, TargetShape};
-use toml_edit::{Array, DocumentMut, value};
+use toml_edit::{Array, DocumentMut, Item, value};
 
 /// The text of the scene of a first sheet, fitted to its target, and what is expected of it.
 pub(super) fn fitted_text(scene: &Scene, text: &str, anyway: bool) -> Result<(String, String)> {
@@ -23,8 +23,9 @@ pub(super) fn fitted_text(scene: &Scene, text: &str, anyway: bool) -> Result<(St
     let SceneConfig { target, .. } = &fit.config;
     let written: DocumentMut = fit.config.to_toml()?.parse()?;
     for key in ["sheet", "posture", "supports", "loads", "drive", "objective", "cells"] {
-        match written.get(key) {
-            Some(item) => document[key] = item.clone(),
+        let is_empty = |item: &&Item| item.as_array().is_some_and(Array::is_empty);
+        match written.get(key).filter(|item| !is_empty(item)) {
+            Some(item) => document[key] = without_places(item.clone()),
             None => _ = document.remove(key),
         }
     }

@@ -2,7 +2,7 @@
 
 mod compression;
 mod cut_angles;
-mod damage;
+pub mod damage;
 mod domain;
 mod fastenings;
 mod panel_shape;

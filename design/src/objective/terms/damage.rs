@@ -11,8 +11,9 @@ use crate::{
     },
 };
 
-/// Peak damage from which a ligament costs more, and the factor on its excess.
-const NEARLY_TORN: f64 = 0.9;
+/// Peak damage from which a ligament costs more.
+pub const NEARLY_TORN: f64 = 0.9;
+/// Factor on its excess.
 const TEARING: f64 = 100.0;
 
 /// The damage functional.
