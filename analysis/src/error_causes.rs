@@ -12,7 +12,7 @@ use hinge::{HingeDeformation, HingeDesign, Regime};
 use scene::{Posture, Scene};
 use serde::{Deserialize, Serialize};
 use support::statistics::rms_and_maximum;
-use surrogate::{SpotCheck, Surrogate};
+use surrogate::Surrogate;
 
 /// A cause of errors of a deployed sheet, in the order of a budget.
 #[derive(
@@ -189,36 +189,37 @@ impl LoadedSheet<'_> {
         hinges.map(norm).collect()
     }
 
-    /// The spot check of the weights, if its mesh and the errors of its forces are known; an error
-    /// outside the training domain, where no check was made.
-    fn spot_check(&self) -> Result<(&SpotCheck, &str, [f64; 3]), String> {
+    /// The states at which the weights were checked, with their mesh and the errors of their forces,
+    /// if these are known; an error outside the training domain, where no check was made.
+    fn check(&self) -> Result<(String, &str, [f64; 3]), String> {
         if self.deployment.final_step().inside.contains(&false) {
             return Err("hinges are outside the training domain".into());
         }
-        let check = self.weights.card().spot_check.as_ref();
-        let check = check.ok_or("no spot check on the card: `surrogate test --record`")?;
+        let check = self.weights.card().check();
+        let (check, states) =
+            check.ok_or("no spot check on the card: `surrogate test --record`")?;
         let known = check.tier.as_deref().zip(check.forces);
         let (tier, forces) = known.ok_or(
             "the spot check on the card is without mesh or forces: `surrogate test --record`",
         )?;
-        Ok((check, tier, forces))
+        Ok((format!("{} {states} states on `{tier}`", check.inside), tier, forces))
     }
 
-    /// The errors of the weights at their spot check, with the source.
+    /// The errors of the weights at these states, with the source.
     fn checked(&self) -> Sourced<Modes> {
-        let (check, tier, forces) = self.spot_check()?;
+        let (states, _, forces) = self.check()?;
         let sizes: Vec<[f64; 3]> =
             (self.norms().into_iter()).map(|norm| forces.map(|error| error * norm)).collect();
         let [f_a, s, m] = forces.map(|error| 100.0 * error);
         let source =
-            format!("{f_a:.1}, {s:.1}, {m:.1} % of the force, {} states on `{tier}`", check.inside);
+            format!("{f_a:.1}, {s:.1}, {m:.1} % of the force, {states}");
         Ok((alike(&sizes, &self.designs, self.states()), source))
     }
 
-    /// Whether the states of the spot check have another mesh than the training rays, so its errors
+    /// Whether these states have another mesh than the training rays, so its errors
     /// contain the error of the mesh.
     fn is_checked_on_finer_mesh(&self) -> bool {
-        self.spot_check().is_ok_and(|(_, tier, _)| tier != self.weights.card().tier)
+        self.check().is_ok_and(|(_, tier, _)| tier != self.weights.card().tier)
     }
 
     /// `None` if only the spot check knows it, on a finer mesh: it is a part of that row.
@@ -250,7 +251,7 @@ impl LoadedSheet<'_> {
     }
 
     fn window_mesh(&self) -> Sourced<Modes> {
-        let (_, tier, _) = self.spot_check()?;
+        let (_, tier, _) = self.check()?;
         if self.is_checked_on_finer_mesh() {
             self.checked()
         } else {

@@ -4,7 +4,7 @@ use anyhow::Result;
 use dataset::{COMPARED, ComparedState, Database, reference_rms};
 use std::path::Path;
 use support::table::Table;
-use surrogate::Surrogate;
+use surrogate::{SpotCheck, Surrogate};
 use train::{ErrorInterval, Parity, inside, spot_check};
 
 /// Prints the errors of weights at the states of a database that lie inside the training domain.
@@ -53,10 +53,15 @@ fn distribution(states: &[ComparedState]) -> Table {
     table
 }
 
-/// Writes the errors to the card of weights.
-pub fn record(surrogate: Surrogate, spot: &Database, weights: &Path) -> Result<()> {
-    let check = spot_check(&surrogate, spot.rows(), &spot.manifest().tier.to_string());
-    surrogate.with_spot_check(check).save(weights)?;
+/// Writes the errors at some states to the card of weights, which is changed by `recorded`.
+pub fn record(
+    surrogate: Surrogate,
+    database: &Database,
+    recorded: impl Fn(Surrogate, SpotCheck) -> Surrogate,
+    weights: &Path,
+) -> Result<()> {
+    let check = spot_check(&surrogate, database.rows(), &database.manifest().tier.to_string());
+    recorded(surrogate, check).save(weights)?;
     println!("recorded on the card of {}", weights.display());
     Ok(())
 }

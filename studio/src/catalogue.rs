@@ -115,10 +115,8 @@ fn offered(card: &Card) -> Result<Option<OfferedMaterial>> {
         if card.material_hash != Some(material.law_hash()) {
             continue;
         }
-        let (errors, on) = match &card.spot_check {
-            Some(check) => (&check.errors, "random"),
-            None => (&card.test_errors, "unseen"),
-        };
+        let checked = card.check().map(|(check, states)| (&check.errors, states));
+        let (errors, on) = checked.unwrap_or((&card.test_errors, "unseen"));
         let [low, high] = card.domain.w_lig;
         return Ok(Some(OfferedMaterial {
             says: format!(

@@ -88,9 +88,20 @@ pub struct Card {
     /// measured.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub spot_check: Option<SpotCheck>,
+    /// Errors on the paths of the hinges of designed sheets, if they were measured.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub visited: Option<SpotCheck>,
 }
 
-/// Errors of a surrogate at random states.
+impl Card {
+    /// The errors where designed sheets go, or else at random states, and which of them they are.
+    pub fn check(&self) -> Option<(&SpotCheck, &'static str)> {
+        let visited = self.visited.as_ref().map(|check| (check, "visited"));
+        visited.or(self.spot_check.as_ref().map(|check| (check, "random")))
+    }
+}
+
+/// Errors of a surrogate at states that no training has seen.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SpotCheck {

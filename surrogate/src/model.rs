@@ -80,6 +80,12 @@ impl Surrogate {
         self
     }
 
+    /// The same surrogate with its errors where designed sheets go on its card.
+    pub fn with_visited(mut self, check: SpotCheck) -> Self {
+        self.card.visited = Some(check);
+        self
+    }
+
     /// The surrogate of the same material at `factor` times the thickness, exact for geometrically
     /// similar hinges.
     ///

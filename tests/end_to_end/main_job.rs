@@ -187,7 +187,7 @@ fn weights_are_tested_on_the_spot_check(work: &Workplace) {
     assert_contains(&page, &tested);
     assert_contains(&page, &["W, relative to its own value"]);
     assert_eq!(card()["spot_check"], Value::Null);
-    assert_contains(&work.output(&format!("{test} --record")), &tested);
+    assert_contains(&work.output(&format!("{test} --record random")), &tested);
     assert_eq!(card()["spot_check"]["errors"]["rows"], 12);
     assert_eq!(card()["spot_check"]["tier"], "tiny");
     // The hinges of the designed sheet are solved along their paths.

@@ -268,6 +268,7 @@ mod tests {
             test_errors: TestErrors::default(),
             error_bins: Vec::new(),
             spot_check: None,
+            visited: None,
         };
         Surrogate::from_parts(layers(networks).unwrap(), card).unwrap()
     }

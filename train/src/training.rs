@@ -357,6 +357,7 @@ fn card(
         test_errors: TestErrors::default(),
         error_bins: Vec::new(),
         spot_check: None,
+        visited: None,
     })
 }
 

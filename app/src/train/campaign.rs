@@ -88,7 +88,7 @@ impl TrainingTask<'_> {
         for file in self.ensemble() {
             let weights = Surrogate::load(&file)?;
             print_errors(&weights, &spot);
-            record(weights, &spot, &file)?;
+            record(weights, &spot, Surrogate::with_spot_check, &file)?;
         }
         Ok(())
     }

@@ -59,6 +59,9 @@ impl CardCommand {
             println!("{name:12} from {:.3} to {:.3}", scale * min, scale * max);
         }
         println!("\n{}", error_table(&card.test_errors, UNSEEN));
+        if let Some(check) = &card.visited {
+            println!("\n{}", error_table(&check.errors, "states on the paths of designed sheets"));
+        }
         if !card.error_bins.is_empty() {
             println!("\n{}", bin_table(&card.error_bins));
         }

@@ -2,7 +2,7 @@
 
 use anyhow::{Result, ensure};
 use app::state_errors::{print_errors, record};
-use clap::Args;
+use clap::{Args, ValueEnum};
 use dataset::Database;
 use std::path::PathBuf;
 use surrogate::Surrogate;
@@ -21,10 +21,17 @@ pub(crate) struct TestCommand {
     /// Database (Parquet with its manifest)
     #[arg(value_name = "DATABASE")]
     database: PathBuf,
-    /// Write the errors to the card of the weights as their spot check, from which the error budget
-    /// of a design takes the errors of the hinge law. The states must be in no training
-    #[arg(long)]
-    record: bool,
+    /// Write the errors to the card of the weights, from which the report of a design takes the
+    /// errors of the hinge law: at random states, or at visited ones, which it prefers. The states
+    /// must be in no training
+    #[arg(long, value_name = "STATES")]
+    record: Option<States>,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum States {
+    Random,
+    Visited,
 }
 
 impl TestCommand {
@@ -43,8 +50,12 @@ impl TestCommand {
             );
         }
         print_errors(&surrogate, &database);
-        if self.record {
-            record(surrogate, &database, &self.weights)?;
+        if let Some(states) = self.record {
+            let recorded = match states {
+                States::Random => Surrogate::with_spot_check,
+                States::Visited => Surrogate::with_visited,
+            };
+            record(surrogate, &database, recorded, &self.weights)?;
         }
         Ok(())
     }

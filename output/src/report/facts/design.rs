@@ -109,6 +109,10 @@ pub(super) fn domain_and_weights(of: &DeployedDesign, _: &FinishedRun) -> Vec<Fa
         let inside = format!(", {} of them inside the domain", check.inside);
         errors("spot check", &check.errors, "random", inside)
     }));
+    facts.extend(card.visited.as_ref().map(|check| {
+        let sheets = ", on the paths of designed sheets".to_owned();
+        errors("visited states", &check.errors, "visited", sheets)
+    }));
     facts
 }
 
