@@ -1,7 +1,6 @@
 //! The cells of a sheet: which voids of its pattern are kept, and the shapes of the panels that are
 //! trimmed.
 
-use crate::drawn_target::rounded;
 use design::{
     geometry::polygon::{area, self_crossing},
     pattern::grid::Grid,
@@ -40,6 +39,11 @@ pub struct TrimmedPanel {
     pub outer: Vec<usize>,
 }
 
+/// To a billionth of a panel's side, far below what tells cuts apart.
+fn short(x: f64) -> f64 {
+    (1e9 * x).round() / 1e9
+}
+
 impl From<&Topology> for CellsConfig {
     fn from(topology: &Topology) -> Self {
         let Grid { m, n } = topology.grid;
@@ -56,7 +60,7 @@ impl From<&Topology> for CellsConfig {
             voids: (1..n).rev().map(row).collect(),
             trimmed: shapes
                 .filter_map(|(number, (panel, trim))| {
-                    let corners = trim.as_ref()?.iter().map(|at| at.map(rounded)).collect();
+                    let corners = trim.as_ref()?.iter().map(|at| at.map(short)).collect();
                     Some(TrimmedPanel { panel: *panel, corners, outer: outer(number) })
                 })
                 .collect(),

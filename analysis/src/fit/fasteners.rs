@@ -103,16 +103,15 @@ impl Held {
 }
 
 /// Panels at which a sheet can be fastened.
-pub(super) struct Candidates<'a> {
-    topology: &'a Topology,
+pub(super) struct Candidates {
     /// The panels that hang at each panel.
     neighbours: Vec<Vec<usize>>,
     /// The panels with room for a hole.
     panels: Vec<usize>,
 }
 
-impl<'a> Candidates<'a> {
-    pub(super) fn new(topology: &'a Topology) -> Self {
+impl Candidates {
+    pub(super) fn new(topology: &Topology) -> Self {
         let mut neighbours = vec![Vec::new(); topology.panel_count()];
         for site in &topology.sites {
             let [a, b] = [site.a.0, site.b.0];
@@ -126,10 +125,11 @@ impl<'a> Candidates<'a> {
             })
         };
         let panels = (0..topology.panel_count()).filter(has_room).collect();
-        Self { topology, neighbours, panels }
+        Self { neighbours, panels }
     }
 
-    /// Some panels far from each other along the sheet; fewer if there are fewer.
+    /// Some panels far from each other along the sheet, fewer if there are fewer: the first two, which
+    /// open it, are the farthest apart.
     pub(super) fn spread(&self, count: usize) -> Vec<usize> {
         let mut some: Vec<usize> = self.farthest(&[0]).into_iter().collect();
         while some.len() < count.min(self.panels.len()) {
@@ -159,19 +159,5 @@ impl<'a> Candidates<'a> {
     /// The panel that is farthest from the even opening, where it is `off` by so much.
     pub(super) fn most_off(&self, off: &[f64]) -> Option<usize> {
         self.panels.iter().copied().max_by(|a, b| off[*a].total_cmp(&off[*b]))
-    }
-
-    /// Some panels, the two farthest apart first: they open the sheet.
-    pub(super) fn in_order(&self, mut some: Vec<usize>) -> Vec<usize> {
-        let apart = |[one, other]: &[usize; 2]| {
-            let [from, to] = [one, other].map(|it| self.topology.places[some[*it]]);
-            from[0].abs_diff(to[0]).pow(2) + from[1].abs_diff(to[1]).pow(2)
-        };
-        let pairs = (0..some.len()).flat_map(|other| (0..other).map(move |one| [one, other]));
-        if let Some([one, other]) = pairs.max_by_key(apart) {
-            some.swap(0, one);
-            some.swap(1, other);
-        }
-        some
     }
 }

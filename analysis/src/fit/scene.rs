@@ -153,9 +153,8 @@ fn fasten(
     let laid = LaidSheet::new(sheet, topology, side);
     let [flat, even] = [0.0, laid.opened].map(|opened| laid.middles(opened));
     let candidates = Candidates::new(topology);
-    let keys = |some: &[usize]| laid.keys(scene, sheet, &candidates.in_order(some.to_vec()));
-    let mut spread = candidates.spread(AT_MOST);
-    let most = keys(&spread);
+    let mut fastened = candidates.spread(AT_MOST);
+    let most = laid.keys(scene, sheet, &fastened);
     // The sheet with the most fasteners is nearest to its even opening.
     let known = || {
         let scene = scene.changed(most.clone()).ok()?;
@@ -163,11 +162,10 @@ fn fasten(
         Some(response.deployment.warm_start())
     };
     let Some(known) = known() else { return (most, None) };
-    spread.truncate(FIRST);
-    let mut fastened = spread;
+    fastened.truncate(FIRST);
     let mut best: Option<(SceneConfig, Held)> = None;
     loop {
-        let config = keys(&fastened);
+        let config = laid.keys(scene, sheet, &fastened);
         // A sheet that is refused is not balanced: what is seen of its target says more.
         let changed = scene.changed(config.clone()).ok();
         let held = changed.and_then(|scene| Held::of(&scene, &flat, &even, &known));

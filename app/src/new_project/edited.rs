@@ -1,7 +1,7 @@
 //! Changes of a TOML text that keep its comments.
 
 use scene::rounded;
-use toml_edit::{Array, DocumentMut, Item, Table, Value};
+use toml_edit::{Array, DocumentMut, Item, Value};
 
 /// Replaces a value and keeps its comment.
 pub fn set(item: &mut Item, value: impl Into<Value>) {
@@ -31,23 +31,6 @@ pub(super) fn map(item: &mut Item, new: impl Fn(f64) -> f64) {
             }
         }
     }
-}
-
-/// Tables of another file without their places in it: they follow what is before them.
-pub(super) fn without_places(mut item: Item) -> Item {
-    fn clear(table: &mut Table) {
-        table.set_position(None);
-        table.iter_mut().for_each(|(_, item)| clear_all(item));
-    }
-    fn clear_all(item: &mut Item) {
-        match item {
-            Item::Table(table) => clear(table),
-            Item::ArrayOfTables(tables) => tables.iter_mut().for_each(clear),
-            Item::None | Item::Value(_) => {}
-        }
-    }
-    clear_all(&mut item);
-    item
 }
 
 /// Replaces the comment at the head of a file.

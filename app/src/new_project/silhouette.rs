@@ -3,7 +3,7 @@
 
 use crate::{
     fitting::fit_to_target,
-    new_project::edited::{heading, set, without_places},
+    new_project::edited::{heading, set},
 };
 use anyhow::{Context, Result};
 use scene::{Scene, SceneConfig, TargetShape};
@@ -21,11 +21,11 @@ pub(super) fn fitted_text(scene: &Scene, text: &str, anyway: bool) -> Result<(St
     );
     // Everything that the fit decides, as the keys of the scene are written.
     let SceneConfig { target, .. } = &fit.config;
-    let written: DocumentMut = fit.config.to_toml()?.parse()?;
-    for key in ["sheet", "posture", "supports", "loads", "drive", "objective", "cells"] {
+    let mut written: DocumentMut = fit.config.to_toml()?.parse()?;
+    for key in ["sheet", "posture", "supports", "loads", "drive", "objective"] {
         let is_empty = |item: &&Item| item.as_array().is_some_and(Array::is_empty);
         match written.get(key).filter(|item| !is_empty(item)) {
-            Some(item) => document[key] = without_places(item.clone()),
+            Some(item) => document[key] = item.clone(),
             None => _ = document.remove(key),
         }
     }
@@ -39,5 +39,7 @@ pub(super) fn fitted_text(scene: &Scene, text: &str, anyway: bool) -> Result<(St
         set(&mut svg["height"], height.unwrap_or_default());
         svg["rotation_deg"] = value(*rotation_deg);
     }
-    Ok((document.to_string(), expected))
+    let mut cells = DocumentMut::new();
+    cells.extend(written.remove_entry("cells"));
+    Ok((format!("{document}\n{cells}"), expected))
 }

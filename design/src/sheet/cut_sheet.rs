@@ -204,11 +204,13 @@ impl Sheet {
     pub fn outlines(&self) -> Vec<Contour> {
         /// Gaps between panels that are rounding errors (mm).
         const ROUNDING: f64 = 1e-3;
+        /// Depth of the notches that sharp corners leave where such gaps were (mm).
+        const NOTCH: f64 = 6e-3;
         if self.topology.is_full() {
             return vec![self.outline.corners.to_vec()];
         }
         let panels = self.panels.iter().map(|panel| panel.boundary.clone()).collect();
-        let joined = Region::union_of(panels).joined(ROUNDING).simplified(ROUNDING, |_| false);
+        let joined = Region::union_of(panels).joined(ROUNDING).simplified(NOTCH, |_| false);
         joined.polygons.into_iter().flatten().collect()
     }
 
