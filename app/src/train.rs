@@ -21,7 +21,7 @@ use support::{
     document::Document,
     table::{Cell, Table},
 };
-use surrogate::{ErrorBin, Surrogate, TestErrors};
+use surrogate::{Surrogate, TestErrors};
 use verification::spread_table;
 
 /// What is trained on a database, and where the weights go.
@@ -127,7 +127,6 @@ impl TrainingTask<'_> {
         let parity = charts::parity(&trained.parity.states, QUANTITIES, axes)?;
         picture::save(&parity, &self.with_suffix("parity"), 2000)?;
         println!("{}\n", error_table(&trained.test_errors, UNSEEN));
-        println!("{}\n", bin_table(&trained.surrogate.card().error_bins));
         if let Some(last) = trained.history.last() {
             println!(
                 "{} epochs in {:.1} s; weights written to {}",
@@ -224,33 +223,6 @@ const QUANTITIES: [&str; 6] = [
     "damage D",
     "damage D_peak",
 ];
-
-/// Relative root mean square errors by bins.
-pub fn bin_table(bins: &[ErrorBin]) -> Table {
-    let mut table = Table::new([
-        "relative RMSE (%)",
-        "from",
-        "to",
-        "samples",
-        "W",
-        "F_a",
-        "F_s",
-        "M",
-        "D",
-        "D_peak",
-    ]);
-    for ErrorBin { quantity, range: [lower, upper], errors } in bins {
-        let mut row = vec![
-            Cell::text(quantity),
-            Cell::fixed(*lower, 2),
-            Cell::fixed(*upper, 2),
-            Cell::text(errors.rows),
-        ];
-        row.extend(errors.percents().map(|percent| Cell::fixed(percent, 2)));
-        table.row(row);
-    }
-    table
-}
 
 /// What a correction would leave, when each ray is corrected by the others.
 pub fn correction(checked: &LeftOut) -> Document {

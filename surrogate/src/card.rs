@@ -7,7 +7,7 @@ use serde::{Deserialize, Deserializer, Serialize};
 use support::{Fault, refuse};
 
 /// Format version of the weight file and its card; no other version is read.
-pub const FORMAT_VERSION: u32 = 9;
+pub const FORMAT_VERSION: u32 = 10;
 
 /// The units of all inputs and outputs of a surrogate.
 pub const UNITS: &str = "mm, N, MPa, N mm, rad";
@@ -82,8 +82,6 @@ pub struct Card {
     pub training_s: Option<f64>,
     /// Errors on the test split.
     pub test_errors: TestErrors,
-    /// Errors on the test split by bins of single quantities.
-    pub error_bins: Vec<ErrorBin>,
     /// Errors at random states of the campaign's region, which no training has seen, if they were
     /// measured.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -162,39 +160,6 @@ pub struct TestErrors {
     pub damage_peak: FitError,
 }
 
-/// Errors on the test rows in which one quantity lies in an interval.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct ErrorBin {
-    /// The quantity.
-    pub quantity: BinQuantity,
-    /// Lower and upper limit; the upper limit belongs to the next bin.
-    pub range: [f64; 2],
-    /// Errors on the rows of the bin.
-    pub errors: TestErrors,
-}
-
-/// A quantity by which test rows are binned.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, strum::Display)]
-#[serde(rename_all = "snake_case")]
-#[strum(serialize_all = "snake_case")]
-pub enum BinQuantity {
-    /// Axial coordinate of the domain, [`TrainingDomain::coordinates`].
-    EtaA,
-    /// Shear coordinate of the domain.
-    EtaS,
-    /// Rotation (deg).
-    ThetaDeg,
-    /// Ligament width (mm).
-    WLig,
-    /// Angle of the cuts (deg).
-    AlphaDeg,
-    /// Radius of the hole over the ligament width.
-    FilletRatio,
-    /// [`TrainingDomain::depth`]: 0 at the edge of the training domain and 1 at its centre.
-    Edge,
-}
-
 /// Deviation of predictions from their targets; NaN if unknown, which is `null` in a card.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -253,11 +218,6 @@ impl Card {
         self.domain.w_lig = self.domain.w_lig.map(|w_lig| factor * w_lig);
         self.hinge.kerf *= factor;
         self.hinge.r_win *= factor;
-        for bin in &mut self.error_bins {
-            if bin.quantity == BinQuantity::WLig {
-                bin.range = bin.range.map(|w_lig| factor * w_lig);
-            }
-        }
         self
     }
 

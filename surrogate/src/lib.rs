@@ -49,7 +49,7 @@ mod tanh;
 mod weights;
 
 pub use card::{
-    BinQuantity, Card, DistillationRecord, ErrorBin, FORMAT_VERSION, FitError, SpotCheck, Teacher,
+    Card, DistillationRecord, FORMAT_VERSION, FitError, SpotCheck, Teacher,
     TestErrors, UNITS,
 };
 pub use damage::HingeDamage;

@@ -1,6 +1,6 @@
 //! A surrogate: the networks of (14) with their card.
 
-use crate::card::{Card, ErrorBin, SpotCheck, TestErrors};
+use crate::card::{Card, SpotCheck, TestErrors};
 use crate::damage::{self, HingeDamage};
 use crate::energy::{self, Prepared};
 use crate::features::{HingeEnergy, Order};
@@ -68,9 +68,8 @@ impl Surrogate {
 
     /// The same surrogate with test errors on its card; they can only be measured with the
     /// surrogate.
-    pub fn with_test_errors(mut self, test_errors: TestErrors, bins: Vec<ErrorBin>) -> Self {
+    pub fn with_test_errors(mut self, test_errors: TestErrors) -> Self {
         self.card.test_errors = test_errors;
-        self.card.error_bins = bins;
         self
     }
 

@@ -266,7 +266,6 @@ mod tests {
             training_rays: None,
             training_s: None,
             test_errors: TestErrors::default(),
-            error_bins: Vec::new(),
             spot_check: None,
             visited: None,
         };

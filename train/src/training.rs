@@ -8,7 +8,7 @@ use crate::loss::loss;
 use crate::networks::{Networks, layers, options, unread};
 use crate::samples::{Batch, Sample, Scales};
 use crate::state::{self, Epoch, Progress, State};
-use crate::validation::{Parity, error_bins};
+use crate::validation::Parity;
 use burn::grad_clipping::GradientClippingConfig;
 use burn::module::ParamGroup;
 use burn::optim::{AdamConfig, GradientsParams, ModuleOptimizer, MuonConfig};
@@ -235,12 +235,11 @@ impl Training {
         let best = export(&self.best, &self.card)?;
         let parity = Parity::new(&best, &self.parts.test);
         let test_errors = parity.errors();
-        let bins = error_bins(&parity, &self.parts.test, &self.card.domain);
         let last = export(&self.networks, &self.card)?;
         let last_errors = Parity::new(&last, &self.parts.test).errors();
         Ok(Trained {
-            surrogate: best.with_test_errors(test_errors, bins),
-            last: last.with_test_errors(last_errors, Vec::new()),
+            surrogate: best.with_test_errors(test_errors),
+            last: last.with_test_errors(last_errors),
             history: self.history,
             test_errors,
             parity,
@@ -355,7 +354,6 @@ fn card(
         training_rays: Some(manifest.split.training.len()),
         training_s: None,
         test_errors: TestErrors::default(),
-        error_bins: Vec::new(),
         spot_check: None,
         visited: None,
     })

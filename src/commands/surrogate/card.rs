@@ -1,7 +1,7 @@
 //! `kirigami surrogate card`
 
 use anyhow::Result;
-use app::train::{UNSEEN, bin_table, error_table};
+use app::train::{UNSEEN, error_table};
 use clap::Args;
 use std::path::PathBuf;
 use surrogate::{Surrogate, Teacher};
@@ -60,10 +60,7 @@ impl CardCommand {
         }
         println!("\n{}", error_table(&card.test_errors, UNSEEN));
         if let Some(check) = &card.visited {
-            println!("\n{}", error_table(&check.errors, "states on the paths of designed sheets"));
-        }
-        if !card.error_bins.is_empty() {
-            println!("\n{}", bin_table(&card.error_bins));
+            println!("\n{}", error_table(&check.errors, "states of hinges in designed sheets"));
         }
         Ok(())
     }
