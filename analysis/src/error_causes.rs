@@ -211,8 +211,7 @@ impl LoadedSheet<'_> {
         let sizes: Vec<[f64; 3]> =
             (self.norms().into_iter()).map(|norm| forces.map(|error| error * norm)).collect();
         let [f_a, s, m] = forces.map(|error| 100.0 * error);
-        let source =
-            format!("{f_a:.1}, {s:.1}, {m:.1} % of the force, {states}");
+        let source = format!("{f_a:.1}, {s:.1}, {m:.1} % of the force, {states}");
         Ok((alike(&sizes, &self.designs, self.states()), source))
     }
 

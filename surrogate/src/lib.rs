@@ -49,8 +49,7 @@ mod tanh;
 mod weights;
 
 pub use card::{
-    Card, DistillationRecord, FORMAT_VERSION, FitError, SpotCheck, Teacher,
-    TestErrors, UNITS,
+    Card, DistillationRecord, FORMAT_VERSION, FitError, SpotCheck, Teacher, TestErrors, UNITS,
 };
 pub use damage::HingeDamage;
 pub use energy::Prepared;

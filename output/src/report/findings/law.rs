@@ -163,7 +163,7 @@ pub(super) const RULES: [Rule; 10] = [
         Warning,
         [
             "the weights are inaccurate",
-            "off by more than 10 % of the force of a hinge where sheets go, else at the spot check, else at unseen rays",
+            "a force is off by more than 10 % where they were checked",
             "`kirigami verify --equilibrium`, more rays",
         ],
         |of| {
@@ -174,7 +174,8 @@ pub(super) const RULES: [Rule; 10] = [
             let errors = &card.test_errors;
             let unseen = || [errors.f_a, errors.f_s, errors.m_theta].map(|it| it.relative_rmse);
             let (forces, states) = checked.unwrap_or_else(|| (unseen(), "unseen"));
-            let forces = forces.map(|error| 100.0 * error).into_iter().zip(["F_a", "F_s", "M_theta"]);
+            let forces =
+                forces.map(|error| 100.0 * error).into_iter().zip(["F_a", "F_s", "M_theta"]);
             let (error, name) = forces.max_by(|one, other| one.0.total_cmp(&other.0))?;
             if error <= INACCURATE {
                 return None;
