@@ -72,7 +72,7 @@ fn a_database_becomes_weights_that_predict_it() {
 
     let train = format!("train {DATABASE} --config configs/training/demo.toml");
     let output = work.output(&format!("{train} --seeds 2 --out {WEIGHTS}"));
-    for expected in ["chosen", "theta_deg"] {
+    for expected in ["chosen", "moment M_theta (N mm)"] {
         assert!(output.contains(expected), "{output}");
     }
     // The rows have no D_peak.
@@ -93,7 +93,7 @@ fn a_database_becomes_weights_that_predict_it() {
         "{tested}"
     );
 
-    work.prints(&format!("surrogate card {WEIGHTS}"), &["PET film 0.5 mm", "edge"]);
+    work.prints(&format!("surrogate card {WEIGHTS}"), &["PET film 0.5 mm", "training domain"]);
 
     let tuned = format!("{train} --from {WEIGHTS} --out runs/tuned.safetensors");
     work.output(&tuned);

@@ -180,7 +180,9 @@ fn fasten(
             best = Some((config, held));
         }
         match next {
-            Some(next) if !suffices && fastened.len() < AT_MOST => fastened.push(next),
+            Some(next) if !suffices && fastened.len() < AT_MOST && !fastened.contains(&next) => {
+                fastened.push(next)
+            }
             _ => break,
         }
     }
