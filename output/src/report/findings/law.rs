@@ -167,8 +167,8 @@ pub(super) const RULES: [Rule; 10] = [
             "`kirigami verify --equilibrium`, more rays",
         ],
         |of| {
-            // Of the force of a hinge where the weights were checked, or else at unseen rays, some of
-            // which leave the training domain, of its root mean square.
+            // Errors over the force of a hinge where the weights were checked; otherwise over the root
+            // mean square at unseen rays, some of which leave the training domain.
             let card = of.scene.weights()?.card();
             let checked = card.check().and_then(|(check, states)| Some((check.forces?, states)));
             let errors = &card.test_errors;
