@@ -16,7 +16,7 @@ use support::statistics::rms_and_maximum;
 /// Number of fasteners that a sheet begins with.
 pub(super) const FIRST: usize = 3;
 /// Largest number of fasteners.
-pub const AT_MOST: usize = 24;
+pub(super) const AT_MOST: usize = 24;
 /// Distance of the panels from the even opening over the longer side of the sheet, root mean square,
 /// up to which fasteners suffice.
 const EVEN: f64 = 0.002;
