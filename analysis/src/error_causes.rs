@@ -195,7 +195,10 @@ impl LoadedSheet<'_> {
         if self.deployment.final_step().inside.contains(&false) {
             return Err("hinges are outside the training domain".into());
         }
-        let check = self.weights.card().check();
+        // Visited states belong to even sheets.
+        let card = self.weights.card();
+        let random = card.spot_check.as_ref().map(|check| (check, "random"));
+        let check = self.scene.config.cells.as_ref().map_or(random, |_| card.check());
         let (check, states) =
             check.ok_or("no spot check on the card: `surrogate test --record`")?;
         let known = check.tier.as_deref().zip(check.forces);

@@ -55,10 +55,13 @@ fn fastened(held: &Held) -> String {
     let margin = margin.map_or(String::new(), |margin| {
         format!("; between them panels stay in the plane up to {margin:.1} times the forces")
     });
+    let peak = peak_damage.map_or(String::new(), |peak| {
+        format!(", {peak:.2} of the damage at which a ligament tears")
+    });
     let enough = if held.suffices() { "" } else { " best, and more do not suffice" };
     format!(
         "{count} fasteners hold it{enough}: panels {off:.2} % of the longer side from the even opening (root mean square), \
-         {force:.0} N a fastener, {borne:.0} % of what its hole bears, {peak_damage:.2} of the damage at which a ligament tears{margin}"
+         {force:.0} N a fastener, {borne:.0} % of what its hole bears{peak}{margin}"
     )
 }
 

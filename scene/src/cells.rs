@@ -39,7 +39,7 @@ pub struct TrimmedPanel {
     pub outer: Vec<usize>,
 }
 
-/// To a billionth of a panel's side, far below what tells cuts apart.
+/// To a billionth of a panel's side, far below the tolerance of a cut.
 fn short(x: f64) -> f64 {
     (1e9 * x).round() / 1e9
 }

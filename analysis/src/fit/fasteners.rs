@@ -41,8 +41,8 @@ pub struct Held {
     pub force: f64,
     /// Part of the force that the edge of its hole bears.
     pub of_borne: f64,
-    /// Largest D_peak of a ligament of the opened sheet; 0 for a law that predicts none.
-    pub peak_damage: f64,
+    /// Largest D_peak of a ligament of the opened sheet; `None` for a law that predicts none.
+    pub peak_damage: Option<f64>,
     /// Margin of the panels against leaving the plane; `None` if it is not known, and where too few
     /// fasteners hold the sheet in the plane.
     pub margin: Option<f64>,
@@ -75,7 +75,7 @@ impl Held {
             off: off.collect(),
             force,
             of_borne: force / borne_by_hole(&scene.material, HOLE),
-            peak_damage: peaks.fold(0.0, f64::max),
+            peak_damage: peaks.reduce(f64::max),
             margin: None,
             leaves_domain: false,
         };
@@ -90,9 +90,9 @@ impl Held {
 
     /// Whether more fasteners are not needed.
     pub fn suffices(&self) -> bool {
-        let bears = self.of_borne < 1.0 && self.peak_damage < NEARLY_TORN;
+        let whole = self.peak_damage.is_none_or(|peak| peak < NEARLY_TORN);
         let stays = self.margin.is_none_or(|margin| margin >= MARGIN);
-        self.unevenness() < EVEN && bears && stays && !self.leaves_domain
+        self.unevenness() < EVEN && self.of_borne < 1.0 && whole && stays && !self.leaves_domain
     }
 
     /// Distance of the panels from the even opening over the longer side of the sheet, root mean
