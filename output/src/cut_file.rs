@@ -22,7 +22,6 @@ mod totals;
 
 pub use attachments::PlacedAttachment;
 pub use cut_drawing::{CutDrawing, Layer, deployed_panels};
-pub(crate) use cut_lines::ROUNDING;
 pub use cut_lines::{CutLines, Hole, Slit};
 pub use cut_list::{attachment_list, cut_list, cut_summary};
 pub use dxf::dxf;

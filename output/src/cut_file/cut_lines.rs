@@ -27,7 +27,9 @@ use crate::{
 };
 use design::{
     geometry::{
-        polygon::{distance, distance_between_segments, distance_to_segment, edges, side},
+        polygon::{
+            bounds, distance, distance_between_segments, distance_to_segment, edges, side, size,
+        },
         region::Contour,
     },
     objective::design_problem::Deployment,
@@ -40,8 +42,10 @@ use support::{Fault, ensure};
 
 /// The least 1 + cos of the turn of an outline at a corner that moves in full with its edges.
 const SHARPEST: f64 = 0.1;
-/// Rounding of lengths (mm): corners of the union of panels are on a raster of a billionth of its size.
-pub(crate) const ROUNDING: f64 = 1e-5;
+/// Rounding of lengths in a sheet of up to a metre (mm); in proportion in a larger one, since corners of
+/// the union of panels are on a raster of a billionth of its size.
+const ROUNDING: f64 = 1e-5;
+const METRE: f64 = 1000.0;
 
 /// One straight cut through the sheet.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -130,7 +134,7 @@ impl CutLines {
         for (hinge, modelled) in sheet.hinges.iter().enumerate() {
             let (width, modelled) = (self.clearance(hinge), modelled.w_lig);
             ensure!(
-                width <= modelled + ROUNDING,
+                width <= modelled + self.rounding(),
                 "the cut opposite hinge {hinge} ends before its ligament, which is {width:.3} mm wide there and {modelled:.3} mm in \
                  the model: narrow the ligaments at the ends of that cut, or keep the panels larger (objective.panel_shape, \
                  objective.min_panel_width)"
@@ -138,8 +142,10 @@ impl CutLines {
         }
         let slits = self.slits.iter().map(|slit| slit.ends);
         let lines: Vec<_> = slits.chain(self.outline_edges()).collect();
+        let rounding = self.rounding();
         for (panel, of) in sheet.panels.iter().enumerate() {
-            let is_cut = |edge: [[f64; 2]; 2]| lines.iter().any(|line| carries(line, edge));
+            let is_cut =
+                |edge: [[f64; 2]; 2]| lines.iter().any(|line| carries(line, edge, rounding));
             // A trimmed panel has another edge where it hangs together with no neighbour.
             let hangs = |side| {
                 let other = sheet.topology.beyond(panel, side);
@@ -248,6 +254,12 @@ impl CutLines {
         self.outlines_at(0.5 * self.kerf())
     }
 
+    /// Rounding of lengths in the sheet (mm).
+    pub(crate) fn rounding(&self) -> f64 {
+        let [width, height] = size(bounds(self.outlines.iter().flatten().copied()));
+        ROUNDING * (width.max(height) / METRE).max(1.0)
+    }
+
     /// The edges of the outlines.
     fn outline_edges(&self) -> impl Iterator<Item = [[f64; 2]; 2]> {
         self.outlines.iter().flat_map(|outline| edges(outline)).map(|(p, q)| [p, q])
@@ -291,11 +303,11 @@ fn moved_outwards(outline: &[[f64; 2]], off: f64) -> Contour {
     (0..count).map(moved).collect()
 }
 
-/// Whether an edge lies along a line, at least in part.
-fn carries(line: &[[f64; 2]; 2], edge: [[f64; 2]; 2]) -> bool {
+/// Whether an edge lies along a line, at least in part, but for a rounding (mm).
+fn carries(line: &[[f64; 2]; 2], edge: [[f64; 2]; 2], rounding: f64) -> bool {
     let [a, b] = *line;
-    edge.iter().all(|end| (side((a, b), *end) / distance(a, b)).abs() < ROUNDING)
-        && distance_between_segments(*line, edge) < ROUNDING
+    edge.iter().all(|end| (side((a, b), *end) / distance(a, b)).abs() < rounding)
+        && distance_between_segments(*line, edge) < rounding
 }
 
 /// Every slit once: the main cut of one hinge (open on the outline) or of two.

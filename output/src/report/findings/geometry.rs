@@ -2,7 +2,7 @@
 
 use super::{Rule, at, found, rule};
 use crate::{
-    cut_file::{ROUNDING, fits},
+    cut_file::fits,
     display::Shape,
     report::{
         deployed::{DeployedDesign, miss},
@@ -177,7 +177,8 @@ pub(super) const RULES: [Rule; 8] = [
         ],
         |of| {
             let cuts = of.cuts.as_ref().ok()?;
-            let close = of.hinges_where(|row| cuts.clearance(row.hinge) < row.w_lig - ROUNDING);
+            let close =
+                of.hinges_where(|row| cuts.clearance(row.hinge) < row.w_lig - cuts.rounding());
             at(close, "another cut is closer to the tip than w_lig")
         },
     ),
@@ -195,7 +196,7 @@ pub(super) const RULES: [Rule; 8] = [
             let stock = cuts.cutting.stock?.size();
             let taken = size(Shape::extent(cuts.drawing().cuts()));
             let room = stock.map(|side| (side - 2.0 * cuts.cutting.margin).max(0.0));
-            (!fits(taken, room.map(|side| side + ROUNDING))).then(|| {
+            (!fits(taken, room.map(|side| side + cuts.rounding()))).then(|| {
                 found(format!(
                     "the cuts take {:.1} x {:.1} mm with kerf and over-run, but the stock has {:.1} x {:.1} mm inside its margin: use a smaller \
                      sheet.size",
