@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 /// Writes the weights (of the best epoch and of the last), their card, the learning curve and a
 /// parity plot, and prints the errors on hinge geometries that were not used for training. After a
 /// stop the same command continues. Examples: kirigami train runs/demo/hinges.parquet --config
-/// configs/training/demo.toml; kirigami train configs/campaigns/polypropylene-3mm.toml
+/// configs/training/small.toml; kirigami train configs/campaigns/polypropylene-3mm.toml
 ///
 /// Of a campaign, whose database is collected, it makes every training that the campaign names,
 /// each with four seeds: the best one is runs/CAMPAIGN/weights/NAME.safetensors, the others NAME-1

@@ -26,7 +26,7 @@ use verification::{ElementWindows, SheetErrors, balanced, verification_tier};
 /// forces: the error of its deployed shape. Writes equilibrium.md. --sheet solves the whole sheet:
 /// whether its panels stay in their plane, and what that changes. Writes sheet.md. Without --design
 /// the design of the scene's run is verified, or the start design if the scene has no run. Example:
-/// kirigami verify configs/scenes/demo.toml --equilibrium
+/// kirigami verify configs/scenes/a4-plate.toml --equilibrium
 #[derive(Args)]
 pub struct VerifyCommand {
     #[command(flatten)]

@@ -5,7 +5,7 @@ use crate::common::{Workplace, failure};
 use std::os::unix::fs::PermissionsExt;
 use testkit::failing_ccx;
 
-const DEMO: &str = "configs/campaigns/demo.toml";
+const CAMPAIGN: &str = "configs/campaigns/tiny.toml";
 const SCENE: &str = "configs/scenes/linear-7x7.toml";
 
 #[test]
@@ -66,7 +66,7 @@ fn the_solver_runs_in_its_own_environment() {
 fn output_that_cannot_be_written_is_an_error_and_no_panic() {
     let work = Workplace::new();
     let full = std::fs::File::options().write(true).open("/dev/full");
-    let message = failure(work.program(&format!("campaign plan {DEMO}")).stdout(full.unwrap()));
+    let message = failure(work.program(&format!("campaign plan {CAMPAIGN}")).stdout(full.unwrap()));
     assert!(
         message.starts_with("error: cannot write to stdout: No space left")
             && message.lines().count() == 1,
@@ -86,10 +86,10 @@ fn output_that_cannot_be_written_is_an_error_and_no_panic() {
 fn counts_have_an_upper_bound() {
     let work = Workplace::new();
     for arguments in [
-        format!("campaign run {DEMO} --jobs 1025"),
-        format!("campaign run {DEMO} --jobs 0"),
-        format!("campaign submit {DEMO} --shards 1000001 --time 1"),
-        format!("campaign submit {DEMO} --shards 1 --time 525601"),
+        format!("campaign run {CAMPAIGN} --jobs 1025"),
+        format!("campaign run {CAMPAIGN} --jobs 0"),
+        format!("campaign submit {CAMPAIGN} --shards 1000001 --time 1"),
+        format!("campaign submit {CAMPAIGN} --shards 1 --time 525601"),
         format!("verify {SCENE} --equilibrium --rounds 1000001"),
     ] {
         let output = work.program(&arguments).output().unwrap();
@@ -103,7 +103,7 @@ fn a_refused_thread_is_an_error_and_no_panic() {
     let fault = "starts no further thread";
     for command in [
         "design configs/scenes/pet-3x3.toml --steps 1",
-        &format!("campaign run {DEMO} --folder campaign"),
+        &format!("campaign run {CAMPAIGN} --folder campaign"),
     ] {
         // No machine has memory for stacks of this size.
         let message = failure(work.program(command).env("RUST_MIN_STACK", "1000000000000000"));

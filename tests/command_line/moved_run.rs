@@ -4,25 +4,18 @@
 use crate::common::Workplace;
 use serde_json::Value;
 
-const SCENE: &str = "configs/scenes/demo.toml";
+const SCENE: &str = "configs/scenes/pet-3x3.toml";
 
 /// The folder `moved` of the run of a learned scene, without the files that the scene names.
 fn moved_run() -> Workplace {
     let work = Workplace::new();
-    std::fs::create_dir_all(work.path("runs/demo")).unwrap();
-    for kind in ["safetensors", "json"] {
-        let [shipped, named] =
-            [format!("data/pet-0.5mm/medium.{kind}"), format!("runs/demo/surrogate.{kind}")];
-        std::fs::copy(work.path(&shipped), work.path(&named)).unwrap();
-    }
     // After two steps the report has errors.
     work.output(&format!("design {SCENE} --steps 2 --force --quiet"));
-    let before = work.output(&format!(
-        "inspect equilibrium {SCENE} --design runs/demo/design/state.json --json"
-    ));
-    std::fs::rename(work.path("runs/demo/design"), work.path("moved")).unwrap();
+    let before = work
+        .output(&format!("inspect equilibrium {SCENE} --design runs/pet-3x3/state.json --json"));
+    std::fs::rename(work.path("runs/pet-3x3"), work.path("moved")).unwrap();
     std::fs::remove_dir_all(work.path("configs")).unwrap();
-    std::fs::remove_dir_all(work.path("runs")).unwrap();
+    std::fs::remove_file(work.path("data")).unwrap();
     work.write("before.json", before);
     work
 }

@@ -10,7 +10,7 @@ use std::process::{Command, Stdio};
 use std::time::Duration;
 use testkit::{failing_ccx, left_running};
 
-const CAMPAIGN: &str = "configs/campaigns/demo.toml";
+const CAMPAIGN: &str = "configs/campaigns/tiny.toml";
 
 /// Solves a small campaign once and replays the output of gmsh and ccx afterwards.
 struct Replay {

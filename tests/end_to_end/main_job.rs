@@ -11,10 +11,10 @@ use std::collections::BTreeSet;
 use std::time::{Duration, Instant};
 use testkit::failing_ccx;
 
-const CAMPAIGN: &str = "configs/campaigns/demo.toml";
-const RUN: &str = "campaign run configs/campaigns/demo.toml --folder runs/demo/campaign";
-const COLLECT: &str = "campaign collect configs/campaigns/demo.toml --folder runs/demo/campaign --out runs/demo/hinges.parquet";
-const STATUS: &str = "campaign status configs/campaigns/demo.toml --folder runs/demo/campaign";
+const CAMPAIGN: &str = "configs/campaigns/tiny.toml";
+const RUN: &str = "campaign run configs/campaigns/tiny.toml --folder runs/tiny/campaign";
+const COLLECT: &str = "campaign collect configs/campaigns/tiny.toml --folder runs/tiny/campaign --out runs/tiny/hinges.parquet";
+const STATUS: &str = "campaign status configs/campaigns/tiny.toml --folder runs/tiny/campaign";
 
 /// Runs the steps in order in one folder.
 macro_rules! story {
@@ -29,7 +29,7 @@ macro_rules! story {
 
 #[test]
 fn the_whole_chain_runs_resumes_and_refuses_to_overwrite() {
-    story! { small_demo();
+    story! { small_chain();
         a_campaign_solves_its_rays_once
         a_database_is_collected_and_not_overwritten
         a_changed_campaign_is_not_collected
@@ -44,7 +44,7 @@ fn the_whole_chain_runs_resumes_and_refuses_to_overwrite() {
 }
 
 /// Short rays of few geometries take seconds; the steps are the steps of a real campaign.
-fn small_demo() -> Workplace {
+fn small_chain() -> Workplace {
     let work = Workplace::new();
     work.edit(
         CAMPAIGN,
@@ -54,11 +54,21 @@ fn small_demo() -> Workplace {
             ("median_deg = 20.0", "median_deg = 15.0"),
         ],
     );
-    work.edit("configs/training/demo.toml", &[("epochs = 300", "epochs = 20")]);
-    work.edit("configs/scenes/demo.toml", &[("steps = 150", "steps = 3")]);
+    work.edit("configs/training/tiny.toml", &[("epochs = 300", "epochs = 20")]);
+    let scene = work.read("configs/scenes/pet-3x3.toml").replace("steps = 150", "steps = 3");
+    // The weights alone, without a draft and an ensemble.
+    let (before, further) = scene.split_once("draft = ").unwrap();
+    let (_, after) = further.split_once("]\n").unwrap();
+    let scene = format!("{before}{after}").replace("../../runs/pet-3x3", "../../runs/tiny/design");
+    work.write("configs/scenes/shipped.toml", &scene);
+    let own =
+        scene.replace(&format!("../../{SHIPPED_WEIGHTS}"), "../../runs/tiny/surrogate.safetensors");
+    assert_ne!(own, scene);
+    work.write(SCENE, own);
     work
 }
 
+const SCENE: &str = "configs/scenes/own.toml";
 const SHIPPED_WEIGHTS: &str = "data/pet-0.5mm/medium.safetensors";
 
 fn json(text: &str) -> Value {
@@ -67,7 +77,7 @@ fn json(text: &str) -> Value {
 
 /// The events that the campaign has logged.
 fn events(work: &Workplace) -> Vec<u8> {
-    let hosts = std::fs::read_dir(work.path("runs/demo/campaign/hosts")).unwrap();
+    let hosts = std::fs::read_dir(work.path("runs/tiny/campaign/hosts")).unwrap();
     let host = hosts.map(|entry| entry.unwrap().path()).next().unwrap();
     std::fs::read(host.join("events-1-of-1.jsonl")).unwrap()
 }
@@ -86,15 +96,15 @@ fn a_database_is_collected_and_not_overwritten(work: &Workplace) {
         &work.output(COLLECT),
         &[
             " rows of 6 rays",
-            "spot check: 12 states of 3 rays, 0 states unknown, written to runs/demo/spot-check.parquet",
+            "spot check: 12 states of 3 rays, 0 states unknown, written to runs/tiny/spot-check.parquet",
         ],
     );
     assert_contains(&work.error(COLLECT), &["exists"]);
     // Also if the spot check alone is there.
     let beside = COLLECT.replace("hinges.parquet", "other.parquet");
     assert_contains(&work.error(&beside), &["spot-check.parquet exists"]);
-    assert!(!work.path("runs/demo/other.parquet").exists());
-    let export = "dataset export runs/demo/hinges.parquet --out runs/demo/hinges.csv";
+    assert!(!work.path("runs/tiny/other.parquet").exists());
+    let export = "dataset export runs/tiny/hinges.parquet --out runs/tiny/hinges.csv";
     work.output(export);
     assert_contains(&work.error(export), &["--replace"]);
     work.output(&format!("{export} --replace"));
@@ -109,14 +119,14 @@ fn a_changed_campaign_is_not_collected(work: &Workplace) {
 }
 
 fn weights_are_trained_and_not_overwritten(work: &Workplace) {
-    let train = "train runs/demo/hinges.parquet --config configs/training/demo.toml \
-                 --out runs/demo/surrogate.safetensors";
+    let train = "train runs/tiny/hinges.parquet --config configs/training/tiny.toml \
+                 --out runs/tiny/surrogate.safetensors";
     assert_contains(&work.output(train), &["shear force"]);
     assert_contains(&work.error(train), &["--replace"]);
 }
 
 fn a_sheet_is_designed_with_all_its_files(work: &Workplace) {
-    let report = json(&work.output("design configs/scenes/demo.toml --json"));
+    let report = json(&work.output(&format!("design {SCENE} --json")));
     assert_eq!(report["hinges"].as_array().unwrap().len(), 12);
     for file in [
         "cut.dxf",
@@ -127,7 +137,7 @@ fn a_sheet_is_designed_with_all_its_files(work: &Workplace) {
         "report.txt",
         "run.html",
     ] {
-        let written = std::fs::metadata(work.path("runs/demo/design").join(file)).unwrap();
+        let written = std::fs::metadata(work.path("runs/tiny/design").join(file)).unwrap();
         assert!(written.len() > 500, "{file} is {} bytes", written.len());
     }
 }
@@ -137,7 +147,7 @@ fn a_sheet_is_designed_with_all_its_files(work: &Workplace) {
 /// round.
 fn balance(rounds: usize) -> String {
     format!(
-        "verify shipped.toml --design runs/demo/design/state.json --equilibrium --rounds {rounds} --tier tiny --out balance --json"
+        "verify configs/scenes/shipped.toml --design runs/tiny/design/state.json --equilibrium --rounds {rounds} --tier tiny --out balance --json"
     )
 }
 
@@ -146,11 +156,6 @@ fn balance_page(work: &Workplace) -> String {
 }
 
 fn the_design_is_balanced_by_finite_elements(work: &Workplace) {
-    let scene = work.read("configs/scenes/demo.toml");
-    let scene = scene
-        .replace("../../runs/demo/surrogate.safetensors", SHIPPED_WEIGHTS)
-        .replace("../materials", "configs/materials");
-    work.write("shipped.toml", scene);
     let text = work.output(&balance(2));
     let again = Instant::now();
     assert_eq!(work.output(&balance(2)), text, "solved once");
@@ -163,7 +168,7 @@ fn the_design_is_balanced_by_finite_elements(work: &Workplace) {
     };
     assert!(errors["corners"][1].as_f64().unwrap() > 0.0, "{balanced}");
     assert!(balanced["budget"]["corners"][0].as_f64().unwrap() > 0.0);
-    assert_eq!(balanced["design"], "design runs/demo/design/state.json");
+    assert_eq!(balanced["design"], "design runs/tiny/design/state.json");
     assert_contains(&balance_page(work), &["by finite elements"]);
 }
 
@@ -176,13 +181,13 @@ fn a_failed_round_keeps_the_rounds_before(work: &Workplace) {
 }
 
 fn weights_are_tested_on_the_spot_check(work: &Workplace) {
-    let test = "surrogate test runs/demo/surrogate.safetensors runs/demo/spot-check.parquet";
-    let card = || json(&work.read("runs/demo/surrogate.json"));
+    let test = "surrogate test runs/tiny/surrogate.safetensors runs/tiny/spot-check.parquet";
+    let card = || json(&work.read("runs/tiny/surrogate.json"));
     // Six rays do not cover the region in which the states are drawn; the rays of the shipped
     // weights cover most of it.
     let tested = ["tested on tier tiny, 3 rays", " of 12 states inside the training domain"];
     assert_contains(&work.output(test), &tested);
-    let shipped = test.replace("runs/demo/surrogate.safetensors", SHIPPED_WEIGHTS);
+    let shipped = test.replace("runs/tiny/surrogate.safetensors", SHIPPED_WEIGHTS);
     let page = work.output(&shipped);
     assert_contains(&page, &tested);
     assert_contains(&page, &["W, relative to its own value"]);
@@ -191,13 +196,13 @@ fn weights_are_tested_on_the_spot_check(work: &Workplace) {
     assert_eq!(card()["spot_check"]["errors"]["rows"], 12);
     assert_eq!(card()["spot_check"]["tier"], "tiny");
     // The hinges of the designed sheet are solved along their paths.
-    let visited = work.output("surrogate visited runs/visited runs/demo/design");
+    let visited = work.output("surrogate visited runs/visited runs/tiny/design");
     assert_contains(&visited, &["tested on tier tiny, 12 rays", "of 60 states inside"]);
-    let again = test.replace("runs/demo/spot-check", "runs/visited/visited");
+    let again = test.replace("runs/tiny/spot-check", "runs/visited/visited");
     assert_eq!(work.output(&again), visited);
     // No ray of the spot check is in the database.
     let [rays, spot] = ["hinges", "spot-check"].map(|name| {
-        let database = Database::read(&work.path(&format!("runs/demo/{name}.parquet"))).unwrap();
+        let database = Database::read(&work.path(&format!("runs/tiny/{name}.parquet"))).unwrap();
         let jobs = database.rows().iter().map(|row| row.job.clone());
         jobs.collect::<BTreeSet<String>>()
     });
@@ -210,18 +215,18 @@ fn further_rays_are_planned(work: &Workplace) {
     work.write("configs/campaigns/further.csv", rays);
     work.edit(CAMPAIGN, &[("spot_rays = 3", "extra_rays = \"further.csv\"\nspot_rays = 3")]);
     let plan =
-        json(&work.output(&format!("campaign plan {CAMPAIGN} --folder runs/demo/campaign --json")));
+        json(&work.output(&format!("campaign plan {CAMPAIGN} --folder runs/tiny/campaign --json")));
     assert_eq!(plan["tally"]["open"], 2, "{plan}");
     work.edit(CAMPAIGN, &[("extra_rays = \"further.csv\"\n", "")]);
 }
 
 fn a_folder_keeps_its_campaign_and_its_scene(work: &Workplace) {
     let before = events(work);
-    work.edit(CAMPAIGN, &[("name = \"demo\"", "name = \"other\"")]);
-    assert_contains(&work.error(RUN), &["contains the campaign `demo`, not `other`"]);
-    work.edit("configs/scenes/demo.toml", &[("[27.85, 0.0]", "[20.0, 0.0]")]);
+    work.edit(CAMPAIGN, &[("name = \"tiny\"", "name = \"other\"")]);
+    assert_contains(&work.error(RUN), &["contains the campaign `tiny`, not `other`"]);
+    work.edit(SCENE, &[("[27.85, 0.0]", "[20.0, 0.0]")]);
     assert_contains(
-        &work.error("design configs/scenes/demo.toml"),
+        &work.error(&format!("design {SCENE}")),
         &["another run, the key `loads` changed"],
     );
     assert_eq!(events(work), before, "a refusal changes nothing");

@@ -53,7 +53,7 @@ fn workplace() -> Workplace {
     let work = Workplace::new();
     database(1.0).write(&work.path(DATABASE), false).unwrap();
     work.edit(
-        "configs/training/demo.toml",
+        "configs/training/tiny.toml",
         &[
             ("[64, 64, 32]", "[24, 24, 12]"),
             ("epochs = 300", "epochs = 150"),
@@ -70,7 +70,7 @@ fn a_database_becomes_weights_that_predict_it() {
     assert!(summary.contains("300 rows of 30 rays"), "{summary}");
     assert!(summary.contains("split by geometry"), "{summary}");
 
-    let train = format!("train {DATABASE} --config configs/training/demo.toml");
+    let train = format!("train {DATABASE} --config configs/training/tiny.toml");
     let output = work.output(&format!("{train} --seeds 2 --out {WEIGHTS}"));
     for expected in ["chosen", "moment M_theta (N mm)"] {
         assert!(output.contains(expected), "{output}");
@@ -103,7 +103,7 @@ fn a_database_becomes_weights_that_predict_it() {
 #[test]
 fn a_training_that_was_killed_before_it_saved_a_state_starts_again() {
     let work = workplace();
-    let train = format!("train {DATABASE} --config configs/training/demo.toml --out {WEIGHTS}");
+    let train = format!("train {DATABASE} --config configs/training/tiny.toml --out {WEIGHTS}");
     let mut killed = work.program(&train).spawn().unwrap();
     let lock = work.path("runs/own.lock");
     while !lock.exists() {
@@ -190,7 +190,7 @@ fn a_database_is_corrected_by_some_rays_of_a_finer_mesh() {
     assert!(compared.contains("does not reduce the differences: D."));
     // A training corrects the rays by itself, and leaves the rays of the finer mesh out.
     work.edit(
-        "configs/training/demo.toml",
+        "configs/training/tiny.toml",
         &[
             ("[64, 64, 32]", "[8, 8, 4]"),
             ("epochs = 300", "epochs = 1"),
@@ -198,7 +198,7 @@ fn a_database_is_corrected_by_some_rays_of_a_finer_mesh() {
         ],
     );
     let trained = work.output(&format!(
-        "train {SHIPPED} --config configs/training/demo.toml --out runs/corrected.safetensors"
+        "train {SHIPPED} --config configs/training/tiny.toml --out runs/corrected.safetensors"
     ));
     assert_eq!(differences(&trained, "W"), [after], "{trained}");
     let card = work.read("runs/corrected.json");
@@ -229,8 +229,8 @@ fn compared(work: &Workplace, name: &str) -> Vec<String> {
 #[test]
 fn seeds_that_are_stopped_continue_and_one_is_chosen() {
     let work = workplace();
-    work.edit("configs/training/demo.toml", &[("epochs = 150", "epochs = 40")]);
-    let train = format!("train {DATABASE} --config configs/training/demo.toml");
+    work.edit("configs/training/tiny.toml", &[("epochs = 150", "epochs = 40")]);
+    let train = format!("train {DATABASE} --config configs/training/tiny.toml");
     work.output(&format!("{train} --seeds 3 --out runs/whole.safetensors"));
 
     // Stopped in the first training.
@@ -269,7 +269,7 @@ fn seeds_that_are_stopped_continue_and_one_is_chosen() {
     assert_eq!(compared(&work, "array"), table);
 
     // Weights of another training are replaced on request only.
-    work.edit("configs/training/demo.toml", &[("epochs = 40", "epochs = 20")]);
+    work.edit("configs/training/tiny.toml", &[("epochs = 40", "epochs = 20")]);
     assert!(work.error(&seeds).contains("exists"));
     work.output(&format!("{seeds} --replace"));
     assert_ne!(compared(&work, "array"), table);

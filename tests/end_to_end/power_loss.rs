@@ -98,7 +98,7 @@ fn system_calls(trace: &str, below: &str) -> Vec<(String, Vec<String>)> {
 fn a_loss_of_power_at_any_moment_leaves_whole_files_and_whole_jobs() {
     let work = Workplace::new();
     work.edit(
-        "configs/campaigns/demo.toml",
+        "configs/campaigns/tiny.toml",
         &[
             ("count = 40", "count = 2"),
             ("spot_rays = 3", "spot_rays = 0"),
@@ -109,7 +109,7 @@ fn a_loss_of_power_at_any_moment_leaves_whole_files_and_whole_jobs() {
     let folder = work.path("runs");
     let below = folder.parent().unwrap().to_str().unwrap();
     let run = work
-        .program(&format!("campaign run configs/campaigns/demo.toml --folder {below}/runs/demo"));
+        .program(&format!("campaign run configs/campaigns/tiny.toml --folder {below}/runs/tiny"));
     let calls =
         "trace=write,pwrite64,writev,fsync,fdatasync,rename,renameat,renameat2,mkdir,mkdirat";
     let mut traced = Command::new("strace");

@@ -15,12 +15,12 @@ use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 use surrogate::Surrogate;
 
-const CAMPAIGN: &str = "configs/campaigns/demo.toml";
+const CAMPAIGN: &str = "configs/campaigns/tiny.toml";
 /// The best network of a training, and the others of its ensemble.
-const NETWORKS: [&str; 4] = ["demo", "demo-1", "demo-2", "demo-3"];
+const NETWORKS: [&str; 4] = ["tiny", "tiny-1", "tiny-2", "tiny-3"];
 
-/// The shipped campaign of the demo with few and short rays, and a short training.
-fn small_demo(changes: &[(&str, &str)]) -> Workplace {
+/// The shipped campaign of films with few and short rays, and a short training.
+fn small_campaign(changes: &[(&str, &str)]) -> Workplace {
     let work = Workplace::new();
     work.edit(
         CAMPAIGN,
@@ -30,11 +30,11 @@ fn small_demo(changes: &[(&str, &str)]) -> Workplace {
         ],
     );
     work.edit(CAMPAIGN, changes);
-    work.edit("configs/training/demo.toml", &[("epochs = 300", "epochs = 5")]);
+    work.edit("configs/training/tiny.toml", &[("epochs = 300", "epochs = 5")]);
     work
 }
 
-/// Runs the first commands of the page, for the campaign of the demo; returns what they print.
+/// Runs the first commands of the page, for that campaign; returns what they print.
 fn regenerate(work: &Workplace) -> String {
     let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/CAMPAIGN.md");
     let page = std::fs::read_to_string(page).unwrap();
@@ -55,26 +55,26 @@ fn regenerate(work: &Workplace) -> String {
 }
 
 fn database(work: &Workplace, name: &str) -> Database {
-    Database::read(&work.path("runs/demo").join(name)).unwrap()
+    Database::read(&work.path("runs/tiny").join(name)).unwrap()
 }
 
 /// The weight files of a training.
 fn weights(work: &Workplace) -> [Vec<u8>; 4] {
     NETWORKS.map(|name| {
-        let file = format!("runs/demo/weights/{name}.safetensors");
+        let file = format!("runs/tiny/weights/{name}.safetensors");
         std::fs::read(work.path(&file)).unwrap()
     })
 }
 
 fn network(work: &Workplace, name: &str) -> Surrogate {
-    let file = format!("runs/demo/weights/{name}.safetensors");
+    let file = format!("runs/tiny/weights/{name}.safetensors");
     Surrogate::load(&work.path(&file)).unwrap()
 }
 
 #[test]
 fn a_database_and_its_weights_are_regenerated_to_the_digits() {
     let [once, again] = [(); 2].map(|()| {
-        let work = small_demo(&[("count = 40", "count = 6")]);
+        let work = small_campaign(&[("count = 40", "count = 6")]);
         regenerate(&work);
         work
     });
@@ -104,7 +104,7 @@ fn a_database_and_its_weights_are_regenerated_to_the_digits() {
     once.output(&format!("train {CAMPAIGN}"));
     assert!(weights(&once) == made);
     // Networks may begin from weights of another material.
-    let base = network(&once, "demo");
+    let base = network(&once, "tiny");
     base.save(&once.path("runs/base.safetensors")).unwrap();
     let (key, named) = ("spot_rays", "pretrained = [\"../../runs/base.safetensors\"]\nspot_rays");
     once.edit(CAMPAIGN, &[(key, named)]);
@@ -150,7 +150,7 @@ impl Solver for Meshes {
 /// others by them.
 #[test]
 fn rays_on_a_finer_mesh_correct_the_others() {
-    let work = small_demo(&[
+    let work = small_campaign(&[
         ("seed = 1", "seed = 1\nfiner = 20"),
         ("spot_rays = 3", "finer_tier = \"small\"\nspot_rays = 3"),
     ]);
@@ -161,7 +161,7 @@ fn rays_on_a_finer_mesh_correct_the_others() {
         other: FakeSolver::new(stiffness, |_| None),
     };
     let options = RunOptions { shard: Shard::WHOLE, workers: 1, time_limit: None, retry: false };
-    let (folder, stop) = (work.path("runs/demo"), AtomicBool::new(false));
+    let (folder, stop) = (work.path("runs/tiny"), AtomicBool::new(false));
     run(&campaign, &folder, &solver, &options, &stop, &mut |_| {}).unwrap();
 
     let commands = ["campaign status", "campaign collect", "train"];
@@ -187,7 +187,7 @@ fn rays_on_a_finer_mesh_correct_the_others() {
         assert_eq!(card.dataset_hash, rays.manifest().hash);
         assert_eq!(card.spot_check.unwrap().tier.as_deref(), Some("small"));
     }
-    let compared = work.output("dataset compare runs/demo/hinges.parquet");
+    let compared = work.output("dataset compare runs/tiny/hinges.parquet");
     for quantity in ["W", "F_a", "F_s", "M_theta"] {
         let [before, after] = differences(&compared, quantity);
         assert_eq!(before, 10.0, "{compared}");

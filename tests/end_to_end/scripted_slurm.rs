@@ -106,7 +106,7 @@ fn an_array_on_another_cluster_is_asked_for_there() {
 fn an_answer_that_is_not_understood_is_quoted_and_submits_nothing() {
     let slurm = Scripted::new();
     slurm.answer("true");
-    let record = slurm.work.path("runs/demo/slurm/submission.json");
+    let record = slurm.work.path("runs/tiny/slurm/submission.json");
     for answer in ["Welcome to the cluster", ""] {
         slurm.script("sbatch", &format!("echo '{answer}'"));
         let message =
@@ -186,7 +186,7 @@ fn an_array_whose_submission_was_killed_is_not_submitted_again() {
     let submit = format!("submit {CAMPAIGN} --shards 4 --time 1");
     let killed = slurm.campaign(&submit).status().unwrap();
     assert_eq!(killed.code(), None);
-    let folder = slurm.work.path("runs/demo/slurm");
+    let folder = slurm.work.path("runs/tiny/slurm");
     assert!(!folder.join("submission.json").exists());
 
     let script = folder.join("array.sh").canonicalize().unwrap();

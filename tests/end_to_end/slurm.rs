@@ -10,7 +10,7 @@ use std::process::{Command, Output, Stdio};
 use std::time::{Duration, Instant};
 use tempfile::TempDir;
 
-pub(crate) const CAMPAIGN: &str = "configs/campaigns/demo.toml";
+pub(crate) const CAMPAIGN: &str = "configs/campaigns/tiny.toml";
 
 /// Slurm and a workplace; dropping it ends every daemon.
 struct Cluster {
@@ -111,7 +111,7 @@ impl Cluster {
 
     /// Number of rays solved by shard `task`, in all of its runs.
     fn solved(&self, task: usize) -> usize {
-        let hosts = self.work.path("runs/demo/hosts");
+        let hosts = self.work.path("runs/tiny/hosts");
         let host = std::fs::read_dir(hosts).into_iter().flatten().next();
         let folder = host.map_or_else(PathBuf::new, |host| host.unwrap().path());
         let history = folder.join(format!("events-{task}-of-4.jsonl"));
@@ -255,7 +255,7 @@ fn a_campaign_on_slurm_gives_the_database_of_one_run() {
     cluster.output(&format!("kirigami campaign collect {CAMPAIGN} --folder runs/whole"));
     let whole = timeless(&cluster.work.path("runs/whole/hinges.parquet"));
 
-    let collected = cluster.work.path("runs/demo/hinges.parquet");
+    let collected = cluster.work.path("runs/tiny/hinges.parquet");
     let ended = |state: &str| {
         let status = cluster.status();
         assert!(state == "completed" || status["slurm"]["collect_state"] != "completed");
@@ -267,7 +267,7 @@ fn a_campaign_on_slurm_gives_the_database_of_one_run() {
     assert_eq!(status["slurm"]["tasks"], expected, "{}", cluster.queue());
     assert!(status["tally"]["open"].as_u64().unwrap() > 0, "{status}");
     assert!(!collected.exists(), "nothing is collected while rays are missing");
-    let log = format!("runs/demo/slurm/demo-{array}-4.log");
+    let log = format!("runs/tiny/slurm/tiny-{array}-4.log");
     let log = std::fs::read_to_string(cluster.work.path(&log)).unwrap();
     assert!(log.contains("run the same command again"), "{log}");
     let shown = cluster.output(&format!("kirigami campaign status {CAMPAIGN}"));
@@ -277,7 +277,7 @@ fn a_campaign_on_slurm_gives_the_database_of_one_run() {
     cluster.until("the database is collected", || ended("completed"));
     assert_eq!(cluster.status()["tally"]["complete"], 43);
     assert!(timeless(&collected) == whole, "the databases differ");
-    let [spot, of_whole] = ["demo", "whole"].map(|folder| {
+    let [spot, of_whole] = ["tiny", "whole"].map(|folder| {
         let path = format!("runs/{folder}/spot-check.parquet");
         timeless(&cluster.work.path(&path))
     });

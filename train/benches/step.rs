@@ -1,5 +1,5 @@
 //! Time of ten training steps (2560 rows in batches of 256), including set-up and one validation,
-//! for the network sizes of `demo.toml` and `paper.toml`.
+//! for the network sizes of `tiny.toml` and `paper.toml`.
 
 use dataset::{Database, Row, SplitPlan};
 use hinge::{HingeConstants, HingeSample};
@@ -10,7 +10,7 @@ fn main() {
 }
 
 #[divan::bench(sample_count = 10, sample_size = 1)]
-fn demo(bencher: divan::Bencher) {
+fn tiny(bencher: divan::Bencher) {
     ten_steps(bencher, &[64, 64, 32]);
 }
 

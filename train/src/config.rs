@@ -110,7 +110,7 @@ mod tests {
     #[test]
     fn errors_of_impossible_values_name_their_key() {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../configs/training");
-        let demo: TrainingConfig = support::toml_file::read(&folder.join("demo.toml")).unwrap();
+        let tiny: TrainingConfig = support::toml_file::read(&folder.join("tiny.toml")).unwrap();
         type Change = fn(&mut TrainingConfig);
         let changes: [(Change, &str); 9] = [
             (|c| c.embedding = vec![8; 17], "embedding"),
@@ -124,7 +124,7 @@ mod tests {
             (|c| c.frozen_layers = 3, "frozen_layers"),
         ];
         for (change, key) in changes {
-            let mut config = demo.clone();
+            let mut config = tiny.clone();
             change(&mut config);
             let message = config.validate().unwrap_err().to_string();
             assert!(message.starts_with(&format!("{key} = ")), "{message}");

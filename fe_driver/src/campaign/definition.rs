@@ -242,13 +242,13 @@ pub(crate) mod tests {
             let named = campaign.training.iter().chain(&campaign.pretrained);
             assert!(named.into_iter().all(|file| file.is_file()));
         }
-        let demo = Campaign::load(&shipped("demo.toml")).unwrap();
-        assert_eq!((demo.rays(), demo.size()), (40, 43));
+        let tiny = Campaign::load(&shipped("tiny.toml")).unwrap();
+        assert_eq!((tiny.rays(), tiny.size()), (40, 43));
     }
 
     /// Two boxes and a further ray, three rays on a finer mesh, and a spot check of two.
     pub fn of_two_boxes() -> Campaign {
-        let mut campaign = Campaign::load(&shipped("demo.toml")).unwrap();
+        let mut campaign = Campaign::load(&shipped("tiny.toml")).unwrap();
         let first = RayBox { count: 5, finer: 2, ..campaign.boxes[0] };
         let second = RayBox {
             count: 3,
@@ -329,7 +329,7 @@ pub(crate) mod tests {
 
     #[test]
     fn an_id_changes_with_every_input_of_the_result() {
-        let mut campaign = Campaign::load(&shipped("demo.toml")).unwrap();
+        let mut campaign = Campaign::load(&shipped("tiny.toml")).unwrap();
         campaign.boxes[0].count = 1;
         let first =
             |campaign: &Campaign, tools: &ToolVersions| campaign.solves(tools).next().unwrap();
@@ -345,12 +345,12 @@ pub(crate) mod tests {
         assert_eq!(other.differences(&job), ["material", "mesh tier"]);
     }
 
-    /// The message about a copy of the demo with changed texts.
+    /// The message about a copy of it with changed texts.
     fn message(changes: &[(&str, &str)]) -> String {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("mine.toml");
         let material = shipped("../materials/pet-0.5mm.toml");
-        let mut text = std::fs::read_to_string(shipped("demo.toml"))
+        let mut text = std::fs::read_to_string(shipped("tiny.toml"))
             .unwrap()
             .replace("../materials/pet-0.5mm.toml", material.to_str().unwrap());
         for (old, new) in changes {
@@ -388,8 +388,8 @@ pub(crate) mod tests {
         let many = message(&[finer, small]);
         assert!(many.contains("[[rays]] violates finer <= count"), "{many}");
 
-        let demo = std::fs::read_to_string(shipped("demo.toml")).unwrap();
-        let (_, rays) = demo.split_once("[[rays]]").unwrap();
+        let tiny = std::fs::read_to_string(shipped("tiny.toml")).unwrap();
+        let (_, rays) = tiny.split_once("[[rays]]").unwrap();
         let rays = format!("[[rays]]{rays}");
         let none = message(&[(&rays, "")]);
         assert!(none.contains("missing field `rays`"), "{none}");

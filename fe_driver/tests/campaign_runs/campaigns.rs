@@ -42,7 +42,7 @@ fn an_interrupted_campaign_is_resumed_to_the_same_rows() {
     assert!(done_before.iter().all(|job| resumed.contains(job)));
 
     let status = status(parts.path()).unwrap();
-    assert_eq!((status.name.as_str(), status.tally.complete), ("demo", 3));
+    assert_eq!((status.name.as_str(), status.tally.complete), ("tiny", 3));
     assert_eq!(status.tally.rows, resumed.iter().map(|job| job.samples.len()).sum::<usize>());
     // A successful job keeps no deck, no log and no output.
     let folder = job_folder(parts.path(), &resumed[0].id);
@@ -64,7 +64,7 @@ fn an_interrupted_campaign_is_resumed_to_the_same_rows() {
     // A campaign with another name is rejected.
     changed.name = "other".into();
     let refused = plan(&changed, parts.path(), &versions).unwrap_err();
-    assert!(refused.to_string().contains("contains the campaign `demo`"), "{refused}");
+    assert!(refused.to_string().contains("contains the campaign `tiny`"), "{refused}");
 }
 
 /// Writes a .sta file with one diverged increment, and prints an error.

@@ -33,9 +33,9 @@ pub fn problem(alpha_deg: f64, eta: [f64; 2], theta_deg: f64) -> WindowProblem {
     WindowProblem::new(ray.driven(Regime::Film), &film(), Tier::Tiny)
 }
 
-/// The first rays of the demo campaign, with small rotations only.
+/// The first rays of the campaign `tiny`, with small rotations only.
 pub fn campaign(count: usize) -> Campaign {
-    let mut campaign = Campaign::load(&configs().join("campaigns/demo.toml")).unwrap();
+    let mut campaign = Campaign::load(&configs().join("campaigns/tiny.toml")).unwrap();
     campaign = campaign.first_rays(count);
     campaign.boxes[0].theta_deg = [4.0, 8.0];
     campaign

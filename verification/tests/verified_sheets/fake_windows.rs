@@ -36,9 +36,9 @@ fn repository() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
 }
 
-/// The sheet of the demo with the smallest shipped weights.
+/// A sheet of nine panels with the smallest shipped weights.
 fn scene() -> Scene {
-    let path = repository().join("configs/scenes/demo.toml");
+    let path = repository().join("configs/scenes/pet-3x3.toml");
     let mut config: SceneConfig = support::toml_file::read(&path).unwrap();
     let weights = repository().join("data/pet-0.5mm/small.safetensors");
     config.name_weights(&weights).unwrap();
@@ -316,7 +316,7 @@ fn a_spot_check_keeps_the_states_of_the_windows_that_are_solved() {
 #[test]
 fn rays_are_solved_in_rounds_until_the_weights_are_accurate() {
     let (scene, folder) = (scene(), tempfile::tempdir().unwrap());
-    let path = repository().join("configs/campaigns/demo.toml");
+    let path = repository().join("configs/campaigns/tiny.toml");
     let mut campaign = Campaign::load(&path).unwrap();
     campaign = campaign.first_rays(12);
     let region = campaign.region().unwrap();
