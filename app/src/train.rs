@@ -125,7 +125,7 @@ impl TrainingTask<'_> {
         self.write_curve(&trained.history)?;
         let axes = ["finite elements", "surrogate"];
         let parity = charts::parity(&trained.parity.states, QUANTITIES, axes)?;
-        picture::save(&parity, &self.with_suffix("parity"), 2000)?;
+        picture::save(&parity, &self.with_suffix("parity"), 1200)?;
         println!("{}\n", error_table(&trained.test_errors, UNSEEN));
         if let Some(last) = trained.history.last() {
             println!(

@@ -25,6 +25,11 @@ pub struct SplitPlan {
     pub test: f64,
 }
 
+impl SplitPlan {
+    /// All rays are of the test part: states on which weights are tested.
+    pub const TEST: Self = Self { seed: 0, validation: 0.0, test: 1.0 };
+}
+
 impl Default for SplitPlan {
     fn default() -> Self {
         Self { seed: 0, validation: 0.1, test: 0.1 }
@@ -55,8 +60,12 @@ pub struct Split {
 }
 
 impl Split {
-    /// Assigns geometries at random; every part has at least one of them.
+    /// Assigns geometries at random; every part has at least one of them, unless all are to test.
     pub(crate) fn deal(geometries: &Geometries, plan: &SplitPlan) -> Result<Self, DatasetError> {
+        if *plan == SplitPlan::TEST {
+            let jobs = geometries.0.values().flatten().cloned();
+            return Ok(Self { test: jobs.collect(), ..Self::default() });
+        }
         let SplitPlan { validation, test, .. } = *plan;
         if ![validation, test].iter().all(|share| (0.0..0.5).contains(share) && *share > 0.0) {
             refuse!(
@@ -203,6 +212,8 @@ mod tests {
         let plan = SplitPlan::default();
         let error = Split::deal(&geometries(&rows(2)), &plan).unwrap_err();
         assert!(error.to_string().starts_with("2 geometries"), "{error}");
+        let tested = Split::deal(&geometries(&rows(1)), &SplitPlan::TEST).unwrap();
+        assert_eq!([tested.training.len(), tested.validation.len(), tested.test.len()], [0, 0, 1]);
         let three = Split::deal(&geometries(&rows(3)), &plan).unwrap();
         assert_eq!(three.training.len(), 1);
         for (validation, test) in [(0.0, 0.1), (0.1, 0.5), (0.1, f64::NAN)] {

@@ -42,6 +42,9 @@ fn scene() -> Scene {
     let mut config: SceneConfig = support::toml_file::read(&path).unwrap();
     let weights = repository().join("data/pet-0.5mm/small.safetensors");
     config.name_weights(&weights).unwrap();
+    config.ligament.range = [12.5, 25.0];
+    (config.objective.damage, config.objective.compression) = (0.01, 0.05);
+    config.objective.panel_shape = 1.0;
     Scene::new(config, &path).unwrap()
 }
 
