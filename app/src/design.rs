@@ -76,11 +76,17 @@ fn refuse_files_of_others(folder: &Path) -> Result<()> {
 
 /// Writes the results of a run to its folder, with pictures and animation.
 pub fn write_run(scene: &Scene, designed: &Designed, force: bool) -> Result<Report> {
-    let report = write_results(scene, designed, force)?;
-    rasterise(&scene.output())?;
-    let frames = deployment_frames(scene, designed, MOST_FRAMES);
-    animation::save(&frames, &scene.output().join(ANIMATION), FRAME_WIDTH)?;
-    Ok(report)
+    let animated = || {
+        let frames = deployment_frames(scene, designed, MOST_FRAMES);
+        animation::save(&frames, &scene.output().join(ANIMATION), FRAME_WIDTH)
+    };
+    std::thread::scope(|scope| {
+        let animated = scope.spawn(animated);
+        let report = write_results(scene, designed, force)?;
+        rasterise(&scene.output())?;
+        animated.join().expect("the frames are drawn")?;
+        Ok(report)
+    })
 }
 
 /// An error if a run is not at its end, or has no cut file.
