@@ -94,7 +94,8 @@ impl NewProject {
         let named = named.map(|weights| weights.regime);
         let cut_from =
             self.stock.map(|stock| CutFrom { stock, margin: self.margin.unwrap_or(0.0) });
-        let mut first = FirstScene::new(self.size, cut_from, sheet.thickness, named)?;
+        let is_even = self.target.is_some() && !fitting.is_empty();
+        let mut first = FirstScene::new(self.size, cut_from, sheet.thickness, named, is_even)?;
         let regime = first.regime;
         let check = MaterialCheck::new(&sheet, &Intended::usual(sheet.thickness, regime));
         let excluded: Vec<String> = check.errors().map(|it| it.message.clone()).collect();

@@ -26,7 +26,7 @@ const MOST: f64 = 1.047;
 /// The opening that is planned for a law that predicts no damage (rad): 45 degrees.
 const UNKNOWN: f64 = 0.785;
 /// Side of a panel over the radius of a window: two windows and a margin.
-const SIDE: f64 = 2.25;
+pub const SIDE: f64 = 2.25;
 /// How far the width of the ligaments is from the narrowest to the widest of the scene.
 const NARROW: f64 = 0.125;
 /// Smallest width of a part of a panel, over the thickness.

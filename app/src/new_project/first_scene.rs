@@ -20,6 +20,7 @@ use crate::{
         template::Template,
     },
 };
+use analysis::fit::scene::SIDE;
 use anyhow::{Context, Result};
 use hinge::Regime;
 use scene::{CuttingConfig, Paper, drawing::drawn_outline::numbered, place_drawing, rounded};
@@ -50,6 +51,8 @@ const WIDEST_OF_PLATE: f64 = 0.7;
 const DAMAGE_OF_PLATE: f64 = 0.0155;
 /// Fewest panels along a side: below three, no panel has a neighbour on both sides.
 const FEWEST: usize = 3;
+/// Fewest panels along a side of an even pattern, whose panels are equal: a loop of four.
+const FEWEST_EVEN: usize = 2;
 
 pub(super) struct FirstScene {
     pub(super) regime: Regime,
@@ -70,12 +73,14 @@ impl FirstScene {
     /// from a stock. Without either it has the size of A4, or is as much larger as it is thicker
     /// than the shipped sheet. A sheet is a film if it is large enough for its thickness, and else
     /// a plate; an error if it is too thin for that. `trained` is the regime of the weights that
-    /// are named, if there are any.
+    /// are named, if there are any. An even pattern, which is laid over a drawing later, needs fewer
+    /// and smaller panels.
     pub(super) fn new(
         size: Option<[f64; 2]>,
         cut_from: Option<CutFrom>,
         thickness: f64,
         trained: Option<Regime>,
+        is_even: bool,
     ) -> Result<Self> {
         let CuttingConfig { over_run, .. } = CuttingConfig::default();
         let largest = cut_from.map(|stock| stock.largest_sheet(over_run, WIDEST_KERF));
@@ -84,7 +89,9 @@ impl FirstScene {
         let regime = match (trained, size) {
             (Some(trained), _) => trained,
             (None, None) if plate => Regime::Plate,
-            (None, Some(size)) if plate && panels(size, thickness, Regime::Film).is_none() => {
+            (None, Some(size))
+                if plate && panels_of(size, thickness, Regime::Film, (FEWEST, PANEL)).is_none() =>
+            {
                 Regime::Plate
             }
             (None, _) => Regime::Film,
@@ -92,16 +99,17 @@ impl FirstScene {
         let template = Template::of(regime);
         let larger = f64::max(thickness / template.thickness, 1.0);
         let size = size.unwrap_or(Paper::A4.size().map(|side| rounded(larger * side)));
-        let panels = panels(size, thickness, regime).with_context(|| {
-            let per_thickness = PANEL * template.r_win / template.thickness;
-            let thickest = size[0].min(size[1]) / FEWEST as f64 / per_thickness;
+        let (fewest, side) = if is_even { (FEWEST_EVEN, SIDE) } else { (FEWEST, PANEL) };
+        let panels = panels_of(size, thickness, regime, (fewest, side)).with_context(|| {
+            let per_thickness = side * template.r_win / template.thickness;
+            let thickest = size[0].min(size[1]) / fewest as f64 / per_thickness;
             let or_thicker = if regime == Regime::Film {
                 format!(", or a plate from {} mm on", Regime::THINNEST_PLATE)
             } else {
                 String::new()
             };
             format!(
-                "a sheet of {thickness} mm with {regime} ligaments has panels of at least {:.0} mm, and needs {FEWEST} of them along each \
+                "a sheet of {thickness} mm with {regime} ligaments has panels of at least {:.0} mm, and needs {fewest} of them along each \
                  side: use a larger sheet (--size, --stock) or a thinner one (--thickness, at most {thickest:.2} mm for this \
                  size){or_thicker}",
                 per_thickness * thickness
@@ -271,14 +279,19 @@ fn placed(drawing: &Path, named: String, centre: [f64; 2], area: f64) -> Result<
     Ok(Item::Table(target))
 }
 
-/// The panels along each side: of the usual size if [`FEWEST`] of them fit, else as few; `None` if
-/// these have no room for their windows.
-fn panels(size: [f64; 2], thickness: f64, regime: Regime) -> Option<[usize; 2]> {
+/// The panels along each side: of the usual size if the fewest fit, else as few; `None` if these are
+/// smaller than `side`, over the radius of a window.
+fn panels_of(
+    size: [f64; 2],
+    thickness: f64,
+    regime: Regime,
+    (fewest, side): (usize, f64),
+) -> Option<[usize; 2]> {
     let template = Template::of(regime);
     let r_win = template.r_win * thickness / template.thickness;
-    let along = |side: f64| ((side / (template.panel * r_win)) as usize).max(FEWEST);
+    let along = |length: f64| ((length / (template.panel * r_win)) as usize).max(fewest);
     let panels = size.map(along);
-    let fits = |(side, count): (f64, usize)| side >= PANEL * r_win * count as f64;
+    let fits = |(length, count): (f64, usize)| length >= side * r_win * count as f64;
     std::iter::zip(size, panels).all(fits).then_some(panels)
 }
 
@@ -345,7 +358,8 @@ mod tests {
     #[test]
     fn the_stroke_is_along_the_pull() {
         let strokes = [(0.1, 30.4), (3.0, 45.4)].map(|(thickness, shipped)| {
-            let scene = FirstScene::new(Some(Paper::A4.size()), None, thickness, None).unwrap();
+            let scene =
+                FirstScene::new(Some(Paper::A4.size()), None, thickness, None, false).unwrap();
             let text = scene.text(Path::new("."), Path::new("weights.safetensors"), None).unwrap();
             let text: DocumentMut = text.parse().unwrap();
             let stroke = text["drive"]["stroke"].as_float().unwrap();
@@ -359,7 +373,7 @@ mod tests {
     #[test]
     fn a_sheet_too_thick_for_a_film_and_too_thin_for_a_plate_is_refused() {
         let a4 = Some(Paper::A4.size());
-        let first = |size, thickness| FirstScene::new(size, None, thickness, None);
+        let first = |size, thickness| FirstScene::new(size, None, thickness, None, false);
         let message = first(a4, 0.5).err().unwrap().to_string();
         assert!(message.contains("at most 0.10 mm"), "{message}");
         let film = first(a4, 0.1).unwrap();
@@ -368,10 +382,15 @@ mod tests {
         assert_eq!((plate.panels, plate.regime), ([3, 4], Regime::Plate));
         let message = first(a4, 8.0).err().unwrap().to_string();
         assert!(message.contains("at most 5.00 mm"), "{message}");
+        // An even pattern needs two panels of nine thicknesses.
+        let small = Some([60.0, 40.0]);
+        let even = FirstScene::new(small, None, 2.0, None, true).unwrap();
+        assert_eq!((even.panels, even.regime), ([2, 2], Regime::Plate));
+        assert!(first(small, 2.0).is_err());
         // Large enough for the ligaments of a film, and with weights of one regime.
         let large = first(Some([4400.0, 6300.0]), 2.0).unwrap();
         assert_eq!(large.regime, Regime::Film);
-        let trained = FirstScene::new(None, None, 1.5, Some(Regime::Film)).unwrap();
+        let trained = FirstScene::new(None, None, 1.5, Some(Regime::Film), false).unwrap();
         assert_eq!(trained.size, [3150.0, 4455.0]);
     }
 
@@ -381,7 +400,7 @@ mod tests {
         for (thickness, size) in
             [(0.05, a4), (0.1, a4), (0.5, [1050.0, 1485.0]), (2.0, a4), (6.0, [420.0, 594.0])]
         {
-            let scene = FirstScene::new(None, None, thickness, None).unwrap();
+            let scene = FirstScene::new(None, None, thickness, None, false).unwrap();
             assert_eq!(scene.size, size);
             assert!(scene.panels.iter().all(|&count| count >= FEWEST));
         }
