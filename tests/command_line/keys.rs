@@ -3,7 +3,6 @@
 
 use crate::common::pages::root;
 use clap::{Command, CommandFactory};
-use dataset::ColumnMeaning;
 use fe_driver::Campaign;
 use hinge::SheetMaterial;
 use kirigami::cli::Cli;
@@ -213,15 +212,6 @@ fn the_page_of_keys_is_what_the_types_say() {
     assert!(shipped == page, "run `KIRIGAMI_WRITE=1 cargo test --test command_line keys`");
 }
 
-/// The table of columns in docs/CAMPAIGN.md.
-fn column_table() -> String {
-    let mut table = "| column | unit | meaning |\n|---|---|---|\n".to_owned();
-    for ColumnMeaning { name, unit, meaning, .. } in &dataset::COLUMNS {
-        writeln!(table, "| `{name}` | {unit} | {meaning} |").unwrap();
-    }
-    table
-}
-
 /// The commands of docs/COMMANDS.md, as their help has them.
 fn command_table() -> String {
     let mut table = "| command | what it does |\n|---|---|\n".to_owned();
@@ -269,11 +259,6 @@ fn rule_table() -> String {
 #[test]
 fn the_page_of_warnings_has_every_rule() {
     assert_table("docs/WARNINGS.md", &rule_table());
-}
-
-#[test]
-fn the_guide_has_the_columns_of_a_database() {
-    assert_table("docs/CAMPAIGN.md", &column_table());
 }
 
 #[test]
