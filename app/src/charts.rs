@@ -3,13 +3,11 @@
 
 pub mod axes;
 mod learning_curve;
-mod levels;
 #[cfg(feature = "pipeline")]
 mod parity;
 mod tensile_test;
 
 pub use learning_curve::learning_curve;
-pub use levels::levels;
 #[cfg(feature = "pipeline")]
 pub use parity::parity;
 pub use tensile_test::tensile_test;

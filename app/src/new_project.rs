@@ -53,8 +53,8 @@ pub struct NewProject {
     pub weights: Option<PathBuf>,
     /// Name of the service that cuts the sheet.
     pub service: Option<String>,
-    /// Whether the ligaments of a plate may be wider than stays flat by itself: its sheet is fitted
-    /// to a drawing afterwards.
+    /// Whether its sheet is fitted to a drawing afterwards: the ligaments of a plate may be wider than
+    /// stays flat by itself.
     pub any_width: bool,
     /// Whether a sheet is made that shows too little of its target to be recognised.
     pub anyway: bool,
@@ -94,7 +94,7 @@ impl NewProject {
         let named = named.map(|weights| weights.regime);
         let cut_from =
             self.stock.map(|stock| CutFrom { stock, margin: self.margin.unwrap_or(0.0) });
-        let is_even = self.target.is_some() && !fitting.is_empty();
+        let is_even = (self.target.is_some() || self.any_width) && !fitting.is_empty();
         let mut first = FirstScene::new(self.size, cut_from, sheet.thickness, named, is_even)?;
         let regime = first.regime;
         let check = MaterialCheck::new(&sheet, &Intended::usual(sheet.thickness, regime));

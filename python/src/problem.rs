@@ -16,6 +16,7 @@ use design::{
     objective::response::{Response, ResponseCotangent},
     optimise,
 };
+use output::run_results::{remove_run, write_results};
 use pyo3::{
     exceptions::{PyTypeError, PyValueError},
     prelude::*,
@@ -24,8 +25,8 @@ use pyo3::{
 use rayon::prelude::*;
 use scene::{
     Scene,
-    design_run::{design_of_run, stored_design},
-    run_inputs::scene_file,
+    design_run::{BegunRun, Earlier, design_of_run, stored_design},
+    run_inputs::{holds_a_run, scene_file},
 };
 use std::{
     path::PathBuf,
@@ -403,6 +404,37 @@ impl Problem {
             })?,
         };
         Ok(list(design.to_flat()))
+    }
+
+    /// Writes a design to a folder as `kirigami design` does, with pictures as SVG alone: cut files,
+    /// report, page, mounting kit. An earlier run in the folder is replaced. `force` writes the cut
+    /// files even if the report has errors. Returns the report, `report.json`.
+    #[pyo3(signature = (x, folder, force=false))]
+    fn write(&self, x: &Argument, folder: PathBuf, force: bool) -> PyResult<Plain> {
+        let mut config = self.scene.starting_at(&self.design_of(x)?);
+        config.output = std::path::absolute(&folder)?;
+        config.optimiser.steps = 0;
+        let holds_others = std::fs::read_dir(&folder).is_ok_and(|mut files| files.next().is_some());
+        if holds_others && !holds_a_run(&folder) {
+            return Err(PyValueError::new_err(format!(
+                "{} has files that no run has written: give another folder",
+                folder.display()
+            )));
+        }
+        let report = unlocked(|| {
+            let scene = self.scene.changed(config).map_err(errors::scene)?;
+            let problem = scene.problem().map_err(errors::scene)?;
+            let start = problem.evaluate(&scene.start()).map_err(errors::design)?;
+            if holds_a_run(&folder) {
+                remove_run(&scene).map_err(errors::scene)?;
+            }
+            let run = BegunRun { scene: scene.clone(), problem, start };
+            let designed = run
+                .search(&Earlier::default(), None, &AtomicBool::new(false), &mut |_, _| {})
+                .map_err(errors::scene)?;
+            write_results(&scene, &designed, force).map_err(errors::scene)
+        })??;
+        Ok(plain(&report))
     }
 
     /// Forgets the last states: the next solves follow their paths from the flat sheet.

@@ -353,3 +353,20 @@ def test_a_problem_is_shared_by_threads(film_problem):
         states = list(threads.map(film_problem.solve, designs))
     for x, state in zip(designs, states):
         np.testing.assert_allclose(state.corners, film_problem.solve(x, warm=False).corners, atol=1e-7)
+
+
+def test_a_design_of_ones_own_is_written_as_a_run(film_problem, tmp_path):
+    x = film_problem.start + 0.01 * RANDOM.standard_normal(film_problem.size)
+    folder = tmp_path / "run"
+    report = film_problem.write(x, folder, force=True)
+    assert report["cut_file"] and report["steps"] == 0
+    for name in ("cut.dxf", "run.html", "deployed.svg", "scene.toml"):
+        assert (folder / name).stat().st_size > 1000, name
+    loss, _ = kg.Problem(folder).loss_and_gradient(kg.Run.read(folder).design)
+    assert loss == pytest.approx(film_problem.loss_and_gradient(x, warm=False)[0], rel=1e-9)
+    # Another design replaces it, but not files of others.
+    film_problem.write(film_problem.start, folder, force=True)
+    assert kg.Run.read(folder).history[0]["loss"] != loss
+    (tmp_path / "notes.txt").write_text("mine")
+    with pytest.raises(ValueError, match="no run has written"):
+        film_problem.write(x, tmp_path)

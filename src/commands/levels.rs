@@ -6,9 +6,8 @@ use crate::{
 };
 use analysis::levels::{LevelCost, Levels, levels};
 use anyhow::Result;
-use app::{charts, design_checks::record, output_file, progress::announce};
+use app::{design_checks::record, progress::announce};
 use clap::Args;
-use std::path::PathBuf;
 use support::{
     document::Document,
     table::{Cell, Table},
@@ -22,7 +21,7 @@ use support::{
 /// the mesh and of the material, is listed below the table. `kirigami design --within` chooses the
 /// level by itself; docs/CHOOSE.md explains the levels; `kirigami verify` compares the finest one
 /// with finite elements. Of the design of a run, report and page of the run are written again, with
-/// the table. Example: kirigami levels configs/scenes/a4-plate.toml --picture runs/levels.svg
+/// the table. Example: kirigami levels configs/scenes/a4-plate.toml
 #[derive(Args)]
 pub struct LevelsCommand {
     #[command(flatten)]
@@ -30,9 +29,6 @@ pub struct LevelsCommand {
     /// Print JSON instead of text
     #[arg(long)]
     json: bool,
-    /// Draw time against difference to this file (SVG)
-    #[arg(long, value_name = "FILE")]
-    picture: Option<PathBuf>,
 }
 
 impl LevelsCommand {
@@ -42,9 +38,6 @@ impl LevelsCommand {
         let found = levels(&scene, &design, stop, &mut |level| {
             announce(&format!("level {level}"));
         })?;
-        if let Some(path) = &self.picture {
-            output_file::write(path, charts::levels(&found)?)?;
-        }
         print_of(self.json, &name, &found, document(&found))?;
         if self.inspected.chosen().is_run(&scene) {
             record(&scene, &design, |checks| checks.levels = Some(found))?;

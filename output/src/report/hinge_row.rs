@@ -1,14 +1,9 @@
 //! One hinge in the report.
 
-use analysis::{flanks::flank_gap, localisation::gamma, path_separation::path_separation};
-use design::{
-    geometry::polygon::{distance, edges},
-    hinge_law::DamageMeasure,
-    objective::design_problem::Deployment,
-    sheet::cut_sheet::{Hinge, Sheet},
-};
+use analysis::{flanks::flank_gap, path_separation::path_separation};
+use design::{hinge_law::DamageMeasure, objective::design_problem::Deployment};
 use hinge::HingeDesign;
-use scene::{Posture, Scene};
+use scene::Scene;
 use serde::Serialize;
 use surrogate::Surrogate;
 
@@ -42,9 +37,6 @@ pub struct HingeRow {
     /// Minimum along the path of the distance of the flanks of the cut where they come nearest
     /// (mm): see [`flank_gap`](analysis::flanks::flank_gap).
     pub flank_gap: f64,
-    /// (21), with the shortest edge of the two panels; `None` for a sheet that does not lie on a
-    /// surface.
-    pub gamma: Option<f64>,
 }
 
 impl HingeRow {
@@ -76,19 +68,6 @@ impl HingeRow {
             path_separation: path_separation(hinge.w_lig, curvature, &states),
             flank_gap: (states.iter().map(|state| flank_gap(&designs[h], state, regime)))
                 .fold(f64::INFINITY, f64::min),
-            gamma: (scene.config.posture)
-                .is_none_or(|posture| posture.kind == Posture::Lying)
-                .then(|| gamma(&scene.material, hinge.w_lig, shortest_edge(sheet, hinge))),
         }
     }
-}
-
-/// The shortest edge of the two panels of a hinge (mm).
-fn shortest_edge(sheet: &Sheet, hinge: &Hinge) -> f64 {
-    hinge
-        .panels()
-        .iter()
-        .flat_map(|&panel| edges(&sheet.panels[panel].corners))
-        .map(|(p, q)| distance(p, q))
-        .fold(f64::INFINITY, f64::min)
 }

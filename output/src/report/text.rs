@@ -22,8 +22,6 @@ D        maximum along the path of the mean damage of the ligament, and D_peak o
          which tears at 1; ?: not known, since the hinge left the training domain of its law; -: no prediction
 domain   whether every state of the path is inside the training domain";
 
-const GAMMA: &str = "\nGamma    (21): moment of the weight of a panel that lies on a surface over the moment of its folded ligament";
-
 const OUTLINE_ROSE: &str = "\
 The outline error rose while the loss fell: of the Chamfer distance, its square is only the part from the corners of the sheet
 to the target. The other part, from the target to the corners, is large where panels are, and terms such as damage have weights.";
@@ -103,15 +101,8 @@ impl Report {
                 self.hinges.len()
             ));
         }
-        let mut columns = hinge_columns();
-        let lies = self.hinges.iter().any(|row| row.gamma.is_some());
-        if lies {
-            columns = columns
-                .column("Gamma", |row| row.gamma.map_or("-".to_owned(), |gamma| rounded(gamma, 3)));
-        }
-        page.table(columns.table(listed));
-        let gamma = if lies { GAMMA } else { "" };
-        page.text(LEGEND.to_owned() + gamma);
+        page.table(hinge_columns().table(listed));
+        page.text(LEGEND);
     }
 }
 

@@ -24,7 +24,7 @@ function take(data) {
   panelCount = run.panels.places.length;
   boundaries = run.panels.places.map((_, k) => run.panels.corners.subarray(8 * k, 8 * k + 8));
   for (const [k, points] of run.panels.trimmed) boundaries[k] = floats(points);
-  unpack(run.hinges, ["w_lig", "alpha_deg", "fillet_ratio", "gamma", "damage", "damage_peak"]);
+  unpack(run.hinges, ["w_lig", "alpha_deg", "fillet_ratio", "damage", "damage_peak"]);
   unpack(states, ["motions", "deformations", "inside", "energy", "forces", "damage", "damage_peak", "spread", "reactions"]);
   stateCount = states.index.length;
   hingeCount = run.hinges.sites.length;

@@ -14,7 +14,7 @@ function hingeLines(state, h) {
   const [fa, fs, m] = states.forces ? forces(state, h) : [];
   const law = (x, unit) => (states.forces ? `${shown(x)} ${unit}` : null);
   const lines = [
-    [["panels", `P${panelA}, P${panelB}`], ["\u0393", Number.isFinite(run.hinges.gamma[h]) ? shown(run.hinges.gamma[h]) : null]],
+    [["panels", `P${panelA}, P${panelB}`]],
     [["w_lig", `${fixed(w, 2)} mm`], ["\u03b1", `${fixed(run.hinges.alpha_deg[h], 1)} deg`]],
     [["\u03b8", `${fixed(theta * DEG, 2)} deg`], ["M_\u03b8", law(m, "N mm")]],
   ];

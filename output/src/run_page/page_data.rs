@@ -159,7 +159,6 @@ fn hinges(sheet: &Sheet, rows: &[HingeRow]) -> Value {
         "w_lig": of(|row| Some(row.w_lig)),
         "alpha_deg": of(|row| Some(row.alpha_deg)),
         "fillet_ratio": packed(sheet.designs().iter().map(|g| g.fillet_ratio)),
-        "gamma": of(|row| row.gamma),
         // Maxima along the path; NaN if not known or not predicted.
         "damage": of(|row| row.damage),
         "damage_peak": of(|row| row.damage_peak),

@@ -82,11 +82,6 @@ pub(super) fn hashes(of: &DeployedDesign, _: &FinishedRun) -> Vec<Fact> {
 
 pub(super) fn domain_and_weights(of: &DeployedDesign, _: &FinishedRun) -> Vec<Fact> {
     let (scene, mut facts) = (of.scene, Vec::new());
-    let gamma = of.hinges.iter().filter_map(|row| row.gamma).min_by(f64::total_cmp);
-    if let Some(gamma) = gamma {
-        let said = format!("{}, for a sheet that lies on a surface", rounded(gamma, 4));
-        facts.push(fact("minimum Gamma", gamma, said));
-    }
     let Some(weights) = scene.weights() else { return facts };
     if scene.surrogate().is_some() {
         let inside = 100.0 * of.deployment.share_inside();
