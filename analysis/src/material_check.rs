@@ -71,8 +71,6 @@ pub struct MaterialCheck {
 /// Limit of an opening (deg).
 const HALF_TURN: f64 = 180.0;
 
-/// Densities below this (kg/m^3) are densities of plastics and papers.
-const LIGHTEST_METAL: f64 = 1700.0;
 /// Maximum of Young's modulus over density of plastics without fibres and of papers (MPa m^3/kg);
 /// paper has up to 12.
 const STIFFEST_PLASTIC: f64 = 12.0;
@@ -196,7 +194,7 @@ fn law(material: &SheetMaterial) -> Vec<Finding> {
 /// Whether a material with the density of a plastic has the modulus of a plastic.
 fn stiffness(material: &SheetMaterial) -> Option<Finding> {
     let [young, density] = [material.young, material.density_kg_m3];
-    (density < LIGHTEST_METAL && young > STIFFEST_PLASTIC * density).then(|| {
+    (!material.is_metal() && young > STIFFEST_PLASTIC * density).then(|| {
         let message = format!(
             "young = {young} MPa is {:.0} MPa for each kg/m^3 of the density {density}: plastics without fibres have less than \
              {STIFFEST_PLASTIC}; in a tensile test check width, thickness, gauge length and units",

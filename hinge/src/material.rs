@@ -60,6 +60,8 @@ pub struct Creep {
     pub years: f64,
 }
 
+/// Densities below this (kg/m^3) are densities of plastics and papers.
+const LIGHTEST_METAL: f64 = 1700.0;
 /// Maximum of Young's modulus over density (MPa m^3/kg): laminates of carbon fibre have up to 190,
 /// beryllium 155, metals 20 to 30, plastics 0.2 to 7.
 const STIFFEST: f64 = 200.0;
@@ -100,6 +102,11 @@ impl SheetMaterial {
     /// Mass of a unit of area (kg/mm^2).
     pub fn mass_by_area(&self) -> f64 {
         1e-9 * self.density_kg_m3 * self.thickness
+    }
+
+    /// Whether it has the density of a metal.
+    pub fn is_metal(&self) -> bool {
+        self.density_kg_m3 >= LIGHTEST_METAL
     }
 
     /// Weight of a unit of area (N/mm^2).

@@ -11,6 +11,7 @@ use crate::element_windows::ElementWindows;
 use crate::verification_error::VerificationError;
 use analysis::level_difference::AtLevel;
 use design::optimise::outer_loop::Ended;
+use hinge::SheetMaterial;
 use mesher::Tier;
 use scene::design_run::{BegunRun, Designed, Earlier, LEVELS, OnStep};
 use scene::{Level, Scene, SolvedHinge, SolvedHinges};
@@ -26,8 +27,8 @@ const SOLVED_HINGES: &str = "solved-hinges.json";
 
 /// The CPU time of the solves of a sheet with `hinges` hinges (s), at most, at the usual time of
 /// the meshes.
-pub fn most_cpu_seconds(tier: Tier, hinges: usize) -> f64 {
-    let rounds = |tier: Tier, count: usize| tier.usual_cpu_seconds() * count as f64;
+pub fn most_cpu_seconds(tier: Tier, material: &SheetMaterial, hinges: usize) -> f64 {
+    let rounds = |tier: Tier, count: usize| tier.usual_cpu_seconds(material) * count as f64;
     let draft = tier.draft().map_or(0.0, |draft| rounds(draft, DRAFT_ROUNDS));
     (draft + rounds(tier, ROUNDS)) * (SEARCHES * hinges) as f64
 }

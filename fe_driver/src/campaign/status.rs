@@ -4,6 +4,7 @@ use crate::{
     Campaign, CampaignFolder, FailureKind, Index, Job, JobPart, Shard, Solve, SolveListError,
     SolveRecord, SolveState, ToolVersions, WindowSolve, short_hash, unless_damaged,
 };
+use hinge::SheetMaterial;
 use mesher::Tier;
 use serde::Serialize;
 use std::collections::{BTreeMap, HashMap, HashSet};
@@ -122,11 +123,11 @@ impl Tally {
     }
 
     /// Time of one worker per job on a tier (s): the mean over the jobs whose time is known,
-    /// otherwise the time for the polyester film.
-    pub(crate) fn seconds_a_job(&self, tier: Tier) -> f64 {
+    /// otherwise the usual time of the material.
+    pub(crate) fn seconds_a_job(&self, tier: Tier, material: &SheetMaterial) -> f64 {
         match self.timed_by_tier.get(&tier) {
             Some((seconds, jobs @ 1..)) => seconds / *jobs as f64,
-            _ => tier.usual_cpu_seconds(),
+            _ => tier.usual_cpu_seconds(material),
         }
     }
 
@@ -279,7 +280,7 @@ pub fn plan(
     }
     let tiers = || to_run.iter();
     Ok(Plan {
-        seconds: tiers().map(|tier| tally.seconds_a_job(*tier)).sum(),
+        seconds: tiers().map(|tier| tally.seconds_a_job(*tier, &campaign.material)).sum(),
         memory_mb: tiers().map(|tier| tier.usual_memory_mb()).fold(0.0, f64::max),
         disk_mb: JOB_MB * to_run.len() as f64,
         tally,
@@ -335,11 +336,16 @@ mod tests {
     /// Restored jobs have no wall time, but their CPU time is the CPU time for this material.
     #[test]
     fn the_time_of_a_job_is_also_that_of_restored_ones() {
-        let seconds = |tally: &Tally| tally.seconds_a_job(Tier::Default);
-        assert_eq!(seconds(&tally(&[None])), Tier::Default.usual_cpu_seconds());
+        let material = solve_on(Tier::Default).problem.material;
+        let seconds = |tally: &Tally| tally.seconds_a_job(Tier::Default, &material);
+        assert_eq!(seconds(&tally(&[None])), Tier::Default.usual_cpu_seconds(&material));
+        let metal = SheetMaterial { density_kg_m3: 7850.0, ..material.clone() };
+        let usual = |material| Tier::Plate.usual_cpu_seconds(material);
+        assert_eq!(usual(&metal), 3.2 * usual(&material));
         let restored = tally(&[solved(60.0, 0.0), solved(80.0, 0.0), None]);
         assert_eq!((restored.timed, seconds(&restored)), (2, 70.0));
-        assert_eq!(restored.seconds_a_job(Tier::Fine), Tier::Fine.usual_cpu_seconds());
+        let fine = restored.seconds_a_job(Tier::Fine, &material);
+        assert_eq!(fine, Tier::Fine.usual_cpu_seconds(&material));
         assert_eq!((restored.solved_here, restored.throughput()), (0, None));
         let mixed = tally(&[solved(60.0, 0.0), solved(75.0, 80.0), None]);
         assert_eq!((mixed.timed, seconds(&mixed)), (2, 70.0));

@@ -49,7 +49,7 @@ impl PlanCommand {
             duration(plan.seconds),
             duration(plan.seconds / workers),
             match plan.tally.timed {
-                0 => "the usual time of its meshes; rays of some materials take longer".into(),
+                0 => "the usual time of its meshes for polymers or metals".into(),
                 timed => format!("from the time of the {timed} rays solved"),
             },
             plan.memory_mb,

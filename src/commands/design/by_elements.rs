@@ -31,7 +31,7 @@ impl DesignCommand {
         let arguments = SolveArgs::default();
         let service = &arguments.service(&scene.output())?;
         let (hinges, workers) = (scene.topology.hinge_count(), arguments.workers());
-        let cpu = most_cpu_seconds(tier, hinges);
+        let cpu = most_cpu_seconds(tier, &scene.material, hinges);
         announce(&format!(
             "{hinges} hinges on the mesh `{tier}`: at most about {} of CPU time, {} on {workers} processors; after Ctrl-C the same \
              command goes on",
