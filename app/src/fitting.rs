@@ -6,6 +6,7 @@ use analysis::fit::{
     scene::{FittedScene, fitted},
 };
 use anyhow::{Result, ensure};
+use hinge::Regime;
 use scene::{Scene, placement::NOT_SEEN};
 
 /// Makes the sheet that opens onto the target of a scene; also returns what a person may expect of
@@ -37,10 +38,10 @@ pub fn expected(fit: &FittedScene, thickness: f64) -> String {
         format!("not shown: a part {width:.0} mm wide {place}; {why} is narrower than two panels of {side:.0} mm")
     }));
     lines.extend(kept_by.map(|factor| {
-        format!(
-            "a stock {factor} times as long and wide shows it, or a sheet of {:.1} mm",
-            thickness / factor
-        )
+        let thinner = (100.0 * thickness / factor).floor() / 100.0;
+        let same = Regime::usual(thinner) == Regime::usual(thickness);
+        let or = if same { format!(", or a sheet of {thinner} mm") } else { String::new() };
+        format!("a stock {factor} times as long and wide shows it{or}")
     }));
     if !lost.is_empty() && kept_by.is_none() {
         lines.push("not even a stock twice as long and wide shows all of it".to_owned());

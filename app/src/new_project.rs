@@ -25,12 +25,15 @@ use analysis::{
     material_check::{Intended, MaterialCheck},
 };
 use anyhow::{Result, bail, ensure};
-use hinge::{Regime, SheetMaterial};
+use hinge::{MIN_W_LIG, Regime, SheetMaterial};
 use scene::{Posture, Scene, Stock, rounded, run_inputs::SCENE_FILE};
-use std::path::{Path, PathBuf};
+use std::{
+    f64::consts::FRAC_PI_2,
+    path::{Path, PathBuf},
+};
 use support::{at, text_file, toml_file, unread};
 use surrogate::{Card, Surrogate};
-use toml_edit::{Array, ArrayOfTables, DocumentMut};
+use toml_edit::{Array, ArrayOfTables, DocumentMut, Item};
 
 /// What a new project is made from; what is `None` is as usual for the rest.
 #[derive(Default)]
@@ -202,7 +205,8 @@ impl NewProject {
                 let surrogate = Surrogate::load(&file)?;
                 let regime = material.regime(card.domain.w_lig[1]);
                 let w_lig = 0.5 * surrogate.domain().w_lig.iter().sum::<f64>();
-                let opening = safe_opening(&surrogate, w_lig, first_scene::OPENING);
+                let angles = [surrogate.domain().alpha[0], FRAC_PI_2];
+                let opening = safe_opening(&surrogate, w_lig, &angles, first_scene::OPENING);
                 fitting.push(Weights {
                     file,
                     regime,
@@ -245,15 +249,30 @@ impl Weights {
         let mut scene: DocumentMut = scene.parse()?;
         let [least, most] = self.widths.map(|width| scale * width);
         for key in ["start", "range"] {
-            let known = |width: f64| rounded(width.clamp(0.99 * least, 1.01 * most));
+            let known =
+                |width: f64| rounded(width.clamp(f64::max(0.99 * least, MIN_W_LIG), 1.01 * most));
             map(&mut scene["ligament"][key], known);
         }
+        // The hole of the narrowest ligament is wider than the slit that it ends.
+        let number = |item: &Item| item.as_float().unwrap_or(f64::NAN);
+        let slit = number(&scene["process"]["slit_width"]);
+        let wider = 0.5 * WIDER * slit / number(&scene["ligament"]["range"][0]);
         let [least, most] = self.holes;
-        map(&mut scene["process"]["fillet_ratio"], |hole| hole.clamp(least, most));
+        let hole = &mut scene["process"]["fillet_ratio"];
+        let usual = number(hole);
+        map(hole, |hole| rounded(hole.max(wider).clamp(least, most)));
+        // The law of released hinges is for the usual hole.
+        if number(hole) != usual
+            && let Some(surrogate) = scene["surrogate"].as_table_mut()
+        {
+            surrogate.remove("springback");
+        }
         Ok(scene.to_string())
     }
 }
 
+/// Diameter of the smallest hole over the width of a slit.
+const WIDER: f64 = 1.02;
 /// Files in a new folder.
 const TRAINING: &str = "training.toml";
 const README: &str = "README.md";

@@ -70,7 +70,7 @@ pub enum InvalidDesign {
 
 /// Minimum and maximum ligament width accepted (mm). The limits are far outside the range that is
 /// cut by hand or machine; they detect values in metres or in micrometres.
-const MIN_W_LIG: f64 = 0.5;
+pub const MIN_W_LIG: f64 = 0.5;
 const MAX_W_LIG: f64 = 500.0;
 /// Minimum window radius over w_lig: the window must contain the tip region that is meshed around
 /// O, and part of the panels around it.

@@ -48,7 +48,7 @@ mod released;
 mod sample;
 
 pub use deformation::{HingeDeformation, HingeForces};
-pub use design::{HingeConstants, HingeDesign, InvalidDesign};
+pub use design::{HingeConstants, HingeDesign, InvalidDesign, MIN_W_LIG};
 pub use domain::TrainingDomain;
 pub use gradient::{DesignGradient, HingeGradient};
 pub use jet::Jet;

@@ -14,10 +14,9 @@ impl Regime {
     /// Ligament width over thickness up to which ligaments bend in the plane
     /// (docs/results/flatness).
     pub const WIDEST_PLATE: f64 = 1.0;
-    /// Thickness (mm) from which a sheet is a plate unless its size says otherwise: the narrowest
-    /// ligaments of a thinner one, a third of its thickness, would be too narrow for a hole wider
-    /// than the kerf.
-    pub const THINNEST_PLATE: f64 = 2.0;
+    /// Thickness (mm) from which a sheet is a plate unless its size says otherwise: ligaments of a
+    /// thinner one, narrower than its thickness, have no room for a hole wider than a usual kerf.
+    pub const THINNEST_PLATE: f64 = 1.0;
 
     /// eta_a of a ligament that turns freely by theta (rad): the coefficients of theta and theta^2.
     /// The ligament of a plate turns about its middle.

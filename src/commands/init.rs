@@ -13,7 +13,7 @@ use std::path::PathBuf;
 ///
 /// Ligament widths, windows, number of panels, stroke and target are scaled to the thickness and
 /// the size of the sheet. A sheet that is large for its thickness has wide ligaments that fold, and
-/// is held flat; from 2 mm on, others have ligaments narrower than the thickness, and bend in their
+/// is held flat; from 1 mm on, others have ligaments narrower than the thickness, and bend in their
 /// plane. The files run as they are: with a material that has weights, `design` at once; with
 /// another, after its campaign and training. README.md in the folder lists the commands. With
 /// --stock the sheet is as large as its cuts fit on a sheet of that stock. Examples: kirigami init
@@ -25,7 +25,7 @@ pub struct InitCommand {
     /// Folder to create
     #[arg(value_name = "FOLDER")]
     folder: PathBuf,
-    /// Sheet material (TOML) [default: configs/materials/polypropylene-3mm.toml, below 2 mm of
+    /// Sheet material (TOML) [default: configs/materials/polypropylene-3mm.toml, below 1 mm of
     /// thickness pet-0.5mm.toml]
     #[arg(long, value_name = "FILE")]
     material: Option<PathBuf>,

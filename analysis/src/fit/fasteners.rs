@@ -26,8 +26,8 @@ const MARGIN: f64 = 1.5;
 /// in sides.
 const MIDDLE: [f64; 2] = [0.5; 2];
 const ROOM: f64 = 0.15;
-/// Diameter of the hole for a fastener (mm), such as a screw of 4 mm.
-pub(super) const HOLE: f64 = 4.2;
+/// Diameters of the holes for screws of 4, 3 and 2 mm (mm).
+pub(super) const HOLES: [f64; 3] = [4.2, 3.2, 2.2];
 
 /// How fasteners hold a sheet.
 #[derive(Clone, Debug, PartialEq)]
@@ -74,7 +74,7 @@ impl Held {
             count: scene.config.supports.len(),
             off: off.collect(),
             force,
-            of_borne: force / borne_by_hole(&scene.material, HOLE),
+            of_borne: force / borne_by_hole(&scene.material, scene.config.supports[0].hole?),
             peak_damage: peaks.reduce(f64::max),
             margin: None,
             leaves_domain: false,

@@ -14,12 +14,11 @@ const NEAR_PATH: f64 = 0.3;
 const HALVINGS: usize = 40;
 
 /// The largest opening, `most` (rad) or less by steps of 5 degrees, at which a ligament of `w_lig`
-/// (mm, in the thickness of the weights) that turns freely is inside the training domain and safe,
-/// at the smallest cut angle of the weights and at a right angle; at least 10 degrees.
-pub fn safe_opening(surrogate: &Surrogate, w_lig: f64, most: f64) -> f64 {
-    let [least, _] = surrogate.domain().alpha;
+/// (mm, in the thickness of the law) that turns freely is inside the training domain and safe
+/// at some cut angles (rad); at least 10 degrees.
+pub fn safe_opening(surrogate: &Surrogate, w_lig: f64, angles: &[f64], most: f64) -> f64 {
     let bears = |theta: f64| {
-        [least, FRAC_PI_2].into_iter().all(|alpha| {
+        angles.iter().all(|&alpha| {
             let (design, state) = free_turn(surrogate, w_lig, alpha, theta);
             let damage = surrogate.damage(&[design], &[state], false);
             let safe = |peak: Option<f64>| peak.is_none_or(|peak| peak <= SAFE_PEAK);
@@ -35,20 +34,20 @@ pub fn safe_opening(surrogate: &Surrogate, w_lig: f64, most: f64) -> f64 {
 }
 
 /// (D / D_s)^2, the damage term (17) of a sheet of uniform ligaments of `w_lig` (mm, in the
-/// thickness of the weights) that turn freely by `theta` (rad) at a right angle.
+/// thickness of the law) that turn freely by `theta` (rad) at a right angle.
 pub fn damage_of_turn(surrogate: &Surrogate, w_lig: f64, theta: f64) -> f64 {
     let (design, state) = free_turn(surrogate, w_lig, FRAC_PI_2, theta);
     let damage = surrogate.damage(&[design], &[state], false);
     damage.iter().map(|damage| (damage.d / surrogate.damage_scale()).powi(2)).sum()
 }
 
-/// The axial opening over the width of a ligament of `w_lig` (mm, in the thickness of the weights)
+/// The axial opening over the width of a ligament of `w_lig` (mm, in the thickness of the law)
 /// that turns freely by `theta` (rad) at a right angle.
 pub fn free_axial_opening(surrogate: &Surrogate, w_lig: f64, theta: f64) -> f64 {
     free_turn(surrogate, w_lig, FRAC_PI_2, theta).1.a / w_lig
 }
 
-/// A ligament of `w_lig` (mm, in the thickness of the weights) that turns by `theta` (rad) without an
+/// A ligament of `w_lig` (mm, in the thickness of the law) that turns by `theta` (rad) without an
 /// axial force.
 fn free_turn(
     surrogate: &Surrogate,

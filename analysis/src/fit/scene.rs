@@ -3,7 +3,7 @@
 
 use crate::fit::even_pattern::Opening;
 use crate::fit::even_sheet::{EvenSheet, THOROUGH, growth};
-use crate::fit::fasteners::{AT_MOST, Candidates, FIRST, HOLE, Held};
+use crate::fit::fasteners::{AT_MOST, Candidates, FIRST, HOLES, Held};
 use crate::fit::lost::{Lost, kept_by, lost};
 use crate::fit::opening::{free_axial_opening, safe_opening};
 use crate::fit::trimmed::{Limits, TOLERANCE};
@@ -19,6 +19,7 @@ use scene::{
     At, CellsConfig, Level, Posture, PostureConfig, Scene, SceneConfig, StartConfig, SupportConfig,
     SupportKind, rounded,
 };
+use std::f64::consts::FRAC_PI_2;
 use support::{Fault, fault, refuse};
 
 /// The largest opening that is planned (rad): 60 degrees.
@@ -113,12 +114,21 @@ fn width(scene: &Scene) -> f64 {
     rounded(narrowest + NARROW * (widest - narrowest))
 }
 
+/// The largest hole for a screw (mm) that leaves the windows of the hinges around the middle of a
+/// panel.
+fn hole(scene: &Scene) -> f64 {
+    let process = scene.config.process;
+    let half = 0.5 * SIDE * process.r_win;
+    let to_tip = half.hypot(half - width(scene) - 0.5 * process.slit_width);
+    let fits = |hole: &f64| process.r_win + 0.5 * hole < to_tip;
+    HOLES.into_iter().find(fits).unwrap_or(HOLES[HOLES.len() - 1])
+}
+
 /// The opening that the material bears (rad).
 fn opening(scene: &Scene) -> f64 {
-    scene.surrogate().map_or(UNKNOWN, |surrogate| {
-        let w_lig = width(scene) / scene.scale();
-        safe_opening(surrogate, w_lig, MOST)
-    })
+    scene
+        .surrogate()
+        .map_or(UNKNOWN, |surrogate| safe_opening(surrogate, width(scene), &[FRAC_PI_2], MOST))
 }
 
 /// Distance from the corner of a panel to the point about which its neighbour has turned when the
@@ -127,7 +137,7 @@ fn set_back(scene: &Scene, angle: f64) -> f64 {
     let width = width(scene);
     let tip = width + 0.5 * scene.config.process.slit_width;
     scene.surrogate().map_or(0.0, |surrogate| {
-        let eta_a = free_axial_opening(surrogate, width / scene.scale(), angle);
+        let eta_a = free_axial_opening(surrogate, width, angle);
         tip - 0.5 * eta_a * width / (0.5 * angle).sin()
     })
 }
@@ -263,7 +273,7 @@ impl<'a> LaidSheet<'a> {
             let at = flat[*panel].map(rounded);
             SupportConfig {
                 at: At::Point(at),
-                hole: Some(HOLE),
+                hole: Some(hole(scene)),
                 displacement: [0, 1].map(|axis| rounded(even[*panel][axis] - at[axis])),
                 ..SupportConfig::at_centroid(self.topology.places[*panel], SupportKind::Pin)
             }

@@ -349,7 +349,8 @@ mod tests {
             let weights = root.join("../data").join(material).join("medium.safetensors");
             let weights = Surrogate::load(&weights).unwrap();
             let w_lig = 0.5 * weights.domain().w_lig.iter().sum::<f64>();
-            let opening = safe_opening(&weights, w_lig, OPENING);
+            let angles = [weights.domain().alpha[0], std::f64::consts::FRAC_PI_2];
+            let opening = safe_opening(&weights, w_lig, &angles, OPENING);
             assert!((opening.to_degrees() - degrees).abs() < 0.1, "{material}: {opening}");
         }
     }

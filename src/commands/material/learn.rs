@@ -77,7 +77,7 @@ pub(crate) struct LearnCommand {
     #[arg(long, value_name = "TIME", default_value = "1h", value_parser = time)]
     time: Duration,
     /// Mesh tier of the windows, which also says whether the ligaments belong to a film or to a
-    /// plate [default: plate from 2 mm of thickness on, below it default]
+    /// plate [default: plate from 1 mm of thickness on, below it default]
     #[arg(long, value_name = "TIER")]
     tier: Option<Tier>,
     /// Number of rays of the first round
