@@ -9,11 +9,22 @@ const SIDE: f64 = 180.0;
 #[test]
 fn a_drawing_becomes_a_sheet_with_a_cut_file() {
     let work = Workplace::new();
-    for (drawing, least) in [("leaf", 0.94), ("vase", 0.95), ("bell", 0.91), ("shield", 0.94)] {
+    // Plates of 2 mm, and the thinnest one.
+    for (drawing, thickness, least) in [
+        ("leaf", 2, 0.94),
+        ("vase", 2, 0.95),
+        ("bell", 2, 0.91),
+        ("shield", 2, 0.94),
+        ("star", 1, 0.92),
+    ] {
+        let side = 0.5 * f64::from(thickness) * SIDE;
         let said = work.output(&format!(
-            "init {drawing} --target configs/targets/{drawing}.svg --thickness 2 --size {SIDE}x{SIDE}"
+            "init {drawing} --target configs/targets/{drawing}.svg --thickness {thickness} --size {side}x{side}"
         ));
-        assert!(said.contains("of the target (common area"), "{said}");
+        assert!(
+            said.contains("opened by 60 deg") && said.contains("of the target (common area"),
+            "{said}"
+        );
         work.output(&format!("design {drawing}/scene.toml"));
         let run = work.path(&format!("{drawing}/design"));
         assert!(run.join("cut.dxf").exists(), "{drawing}");
@@ -25,6 +36,9 @@ fn a_drawing_becomes_a_sheet_with_a_cut_file() {
         let warnings = report["warnings"].as_array().unwrap();
         assert_eq!(warnings.iter().find(warned), None, "{drawing}");
     }
+    // A film in another thickness than its weights opens as far.
+    let film = "init film --target configs/targets/star.svg --thickness 0.1 --size 450x450";
+    assert!(work.output(film).contains("opened by 60 deg"));
 }
 
 /// What is narrower than two panels is named, with what would show it; a sheet that hides its
