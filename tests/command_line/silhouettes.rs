@@ -10,31 +10,21 @@ const SIDE: f64 = 180.0;
 fn a_drawing_becomes_a_sheet_with_a_cut_file() {
     let work = Workplace::new();
     // Plates of 2 mm, and the thinnest one.
-    for (drawing, thickness, least) in [
-        ("leaf", 2, 0.94),
-        ("vase", 2, 0.95),
-        ("bell", 2, 0.91),
-        ("shield", 2, 0.94),
-        ("star", 1, 0.92),
-    ] {
+    let plates = [("leaf", 2, 0.94), ("vase", 2, 0.95), ("bell", 2, 0.91), ("shield", 2, 0.94)];
+    for (drawing, thickness, least) in plates.into_iter().chain([("star", 1, 0.92)]) {
         let side = 0.5 * f64::from(thickness) * SIDE;
         let said = work.output(&format!(
             "init {drawing} --target configs/targets/{drawing}.svg --thickness {thickness} --size {side}x{side}"
         ));
-        assert!(
-            said.contains("opened by 60 deg") && said.contains("of the target (common area"),
-            "{said}"
-        );
+        assert!(said.contains("opened by 60 deg, show"), "{said}");
         work.output(&format!("design {drawing}/scene.toml"));
-        let run = work.path(&format!("{drawing}/design"));
-        assert!(run.join("cut.dxf").exists(), "{drawing}");
-        let report = std::fs::read_to_string(run.join("report.json")).unwrap();
+        assert!(work.path(&format!("{drawing}/design/cut.dxf")).exists(), "{drawing}");
+        let report = work.read(&format!("{drawing}/design/report.json"));
         let report: Value = serde_json::from_str(&report).unwrap();
         let seen = report["seen"].as_f64().unwrap();
         assert!(seen > least, "{drawing}: {seen}");
-        let warned = |found: &&Value| found["severity"] != "note";
-        let warnings = report["warnings"].as_array().unwrap();
-        assert_eq!(warnings.iter().find(warned), None, "{drawing}");
+        let mut found = report["warnings"].as_array().unwrap().iter();
+        assert_eq!(found.find(|it| it["severity"] != "note"), None, "{drawing}");
     }
     // A film in another thickness than its weights opens as far.
     let film = "init film --target configs/targets/star.svg --thickness 0.1 --size 450x450";
