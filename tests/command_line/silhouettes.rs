@@ -16,7 +16,8 @@ fn a_drawing_becomes_a_sheet_with_a_cut_file() {
         let said = work.output(&format!(
             "init {drawing} --target configs/targets/{drawing}.svg --thickness {thickness} --size {side}x{side}"
         ));
-        assert!(said.contains("opened by 60 deg, show"), "{said}");
+        assert!(said.contains("of the target (common area"), "{said}");
+        assert!(said.contains("opened by 60 deg"), "{said}");
         work.output(&format!("design {drawing}/scene.toml"));
         assert!(work.path(&format!("{drawing}/design/cut.dxf")).exists(), "{drawing}");
         let report = work.read(&format!("{drawing}/design/report.json"));

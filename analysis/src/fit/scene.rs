@@ -114,13 +114,18 @@ fn width(scene: &Scene) -> f64 {
     rounded(narrowest + NARROW * (widest - narrowest))
 }
 
+/// Distance from the corner of a panel to the tip of the cut (mm).
+fn to_tip(scene: &Scene) -> f64 {
+    width(scene) + 0.5 * scene.config.process.slit_width
+}
+
 /// The largest hole for a screw (mm) that leaves the windows of the hinges around the middle of a
 /// panel.
 fn hole(scene: &Scene) -> f64 {
-    let process = scene.config.process;
-    let half = 0.5 * SIDE * process.r_win;
-    let to_tip = half.hypot(half - width(scene) - 0.5 * process.slit_width);
-    let fits = |hole: &f64| process.r_win + 0.5 * hole < to_tip;
+    let r_win = scene.config.process.r_win;
+    let half = 0.5 * SIDE * r_win;
+    let tip = half.hypot(half - to_tip(scene));
+    let fits = |hole: &f64| r_win + 0.5 * hole < tip;
     HOLES.into_iter().find(fits).unwrap_or(HOLES[HOLES.len() - 1])
 }
 
@@ -135,10 +140,9 @@ fn opening(scene: &Scene) -> f64 {
 /// ligament is free (mm).
 fn set_back(scene: &Scene, angle: f64) -> f64 {
     let width = width(scene);
-    let tip = width + 0.5 * scene.config.process.slit_width;
     scene.surrogate().map_or(0.0, |surrogate| {
         let eta_a = free_axial_opening(surrogate, width, angle);
-        tip - 0.5 * eta_a * width / (0.5 * angle).sin()
+        to_tip(scene) - 0.5 * eta_a * width / (0.5 * angle).sin()
     })
 }
 
@@ -269,11 +273,12 @@ impl<'a> LaidSheet<'a> {
         config.start = StartConfig::default();
         config.clear_actuation();
         let [flat, even] = [0.0, self.opened].map(|opened| self.middles(opened));
+        let hole = Some(hole(scene));
         let fastener = |panel: &usize| {
             let at = flat[*panel].map(rounded);
             SupportConfig {
                 at: At::Point(at),
-                hole: Some(hole(scene)),
+                hole,
                 displacement: [0, 1].map(|axis| rounded(even[*panel][axis] - at[axis])),
                 ..SupportConfig::at_centroid(self.topology.places[*panel], SupportKind::Pin)
             }

@@ -47,8 +47,6 @@ pub enum Look {
     Circles(i32),
     /// A cross of this size at each.
     Crosses(i32),
-    /// A rectangle between two corners.
-    Band,
     /// The name of the series at each, in a font of this size.
     Text(i32),
 }
@@ -110,7 +108,6 @@ where
             Look::Dashed => chart.draw_series(DashedLineSeries::new(points, 6, 4, style)),
             Look::Circles(size) => chart.draw_series(each.map(|at| Circle::new(at, size, style))),
             Look::Crosses(size) => chart.draw_series(each.map(|at| Cross::new(at, size, style))),
-            Look::Band => chart.draw_series([Rectangle::new([points[0], points[1]], style)]),
             Look::Text(size) => {
                 let text = |at| Text::new(name.clone(), at, (FONT, size).into_font());
                 chart.draw_series(each.map(text))?;
@@ -121,7 +118,6 @@ where
             drawn.label(name).legend(move |(x, y)| match look {
                 Look::Circles(size) => Circle::new((x + 9, y), size, style).into_dyn(),
                 Look::Crosses(size) => Cross::new((x + 9, y), size, style).into_dyn(),
-                Look::Band => Rectangle::new([(x, y - 5), (x + 18, y + 5)], style).into_dyn(),
                 _ => PathElement::new([(x, y), (x + 16, y)], style).into_dyn(),
             });
         }

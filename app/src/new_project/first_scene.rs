@@ -164,21 +164,7 @@ impl FirstScene {
             scale(&mut scene["ligament"][key], factor);
         }
         scale(&mut scene["process"]["r_win"], factor);
-        let surrogate = &mut scene["surrogate"];
-        set(&mut surrogate["weights"], named(weights)?);
-        if let Some(surrogate) = surrogate.as_table_mut() {
-            surrogate.remove("ensemble");
-            // The law of released hinges and the smaller network stand next to the weights of their
-            // material.
-            for (key, name) in [("springback", SPRINGBACK), ("draft", DRAFT)] {
-                match weights.with_file_name(name) {
-                    file if file.is_file() => {
-                        set(&mut surrogate[key], named(&file)?);
-                    }
-                    _ => _ = surrogate.remove(key),
-                }
-            }
-        }
+        name_weights(&mut scene["surrogate"], weights, named)?;
         // Clips as wide, relative to the edge that they hold, as the clips of the template.
         let edge = self.size[0] / self.panels[0] as f64;
         for (list, panel, part) in [("supports", held, HELD), ("loads", pulled, PULLED)] {
@@ -260,6 +246,25 @@ impl FirstScene {
             beyond_clip: [opened[0], opened[1] - half],
         }
     }
+}
+
+/// Names weights, and what stands next to them, in the table `[surrogate]`.
+fn name_weights(
+    surrogate: &mut Item,
+    weights: &Path,
+    named: impl Fn(&Path) -> Result<String>,
+) -> Result<()> {
+    set(&mut surrogate["weights"], named(weights)?);
+    let Some(surrogate) = surrogate.as_table_mut() else { return Ok(()) };
+    surrogate.remove("ensemble");
+    // The law of released hinges and the smaller network stand next to the weights of their material.
+    for (key, name) in [("springback", SPRINGBACK), ("draft", DRAFT)] {
+        match weights.with_file_name(name) {
+            file if file.is_file() => set(&mut surrogate[key], named(&file)?),
+            _ => _ = surrogate.remove(key),
+        }
+    }
+    Ok(())
 }
 
 /// The table `[target]` of a drawing, `named` by the scene, centred at `centre` (mm) and the given area (mm^2).

@@ -131,10 +131,11 @@ impl CutLines {
     /// The ligaments at the ends of a cut shorten it: every ligament must still end at its
     /// secondary cut, and every edge of a panel must be cut somewhere.
     fn reach_what_they_cut(&self, sheet: &Sheet) -> Result<(), Fault> {
+        let rounding = self.rounding();
         for (hinge, modelled) in sheet.hinges.iter().enumerate() {
             let (width, modelled) = (self.clearance(hinge), modelled.w_lig);
             ensure!(
-                width <= modelled + self.rounding(),
+                width <= modelled + rounding,
                 "the cut opposite hinge {hinge} ends before its ligament, which is {width:.3} mm wide there and {modelled:.3} mm in \
                  the model: narrow the ligaments at the ends of that cut, or keep the panels larger (objective.panel_shape, \
                  objective.min_panel_width)"
@@ -142,7 +143,6 @@ impl CutLines {
         }
         let slits = self.slits.iter().map(|slit| slit.ends);
         let lines: Vec<_> = slits.chain(self.outline_edges()).collect();
-        let rounding = self.rounding();
         for (panel, of) in sheet.panels.iter().enumerate() {
             let is_cut =
                 |edge: [[f64; 2]; 2]| lines.iter().any(|line| carries(line, edge, rounding));

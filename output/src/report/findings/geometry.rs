@@ -177,8 +177,8 @@ pub(super) const RULES: [Rule; 8] = [
         ],
         |of| {
             let cuts = of.cuts.as_ref().ok()?;
-            let close =
-                of.hinges_where(|row| cuts.clearance(row.hinge) < row.w_lig - cuts.rounding());
+            let rounding = cuts.rounding();
+            let close = of.hinges_where(|row| cuts.clearance(row.hinge) < row.w_lig - rounding);
             at(close, "another cut is closer to the tip than w_lig")
         },
     ),
