@@ -56,21 +56,22 @@ impl AtLevel {
         }
     }
 
-    /// What is kept of a search that ended at this design, compared with a finer level and with a
-    /// tolerance (mm).
+    /// What is kept of a search that ended at this design, compared with a finer level; tolerance
+    /// and error by the mesh of the windows in mm.
     pub fn coarse_search(
         &self,
         search: &SearchState,
         finer: &Self,
-        tolerance: f64,
+        tolerance: Option<f64>,
+        mesh: f64,
     ) -> CoarseSearch {
         CoarseSearch {
             level: self.level,
-            start: search.history[0].scores.clone(),
-            steps: search.last().step,
+            history: search.history.clone(),
             finer: finer.level,
             difference: self.difference(finer),
             tolerance,
+            mesh,
         }
     }
 

@@ -1,11 +1,18 @@
-//! How a sheet is mounted on a board: its fasteners in the order of the supports of its scene.
+//! How a sheet is mounted on a board: opened evenly by hand and let go, then fastened in the order of
+//! the supports of its scene.
+//!
+//! An opened sheet springs back, and its hinges are elastic about what stays. So the way of a hole to
+//! its place is short, and no ligament is far from its state in the opened sheet.
 
+use crate::springback::LetGo;
 use design::equilibrium::load_step::{LoadStep, Status};
 use design::geometry::polygon::bounds;
-use design::hinge_law::DamageMeasure;
+use design::hinge_law::{DamageMeasure, Order, PreparedLaw, ReleasedLaw};
 use design::objective::design_problem::{Deployment, DesignProblem};
 use design::sheet::cut_sheet::Sheet;
-use design::sheet::kinematics::{Configuration, corner_distances, deployed, deployed_boundaries};
+use design::sheet::kinematics::{
+    Configuration, Motion, corner_distances, deployed, deployed_boundaries,
+};
 use hinge::SheetMaterial;
 use scene::placement::placed;
 use scene::{Posture, Scene};
@@ -17,6 +24,9 @@ const ROUND: f64 = 10.0;
 /// Factor by which the pressure on the edge of a hole stays below the stress at which the material
 /// yields.
 const SAFETY: f64 = 2.0;
+
+/// What stays of an opening, over it, up to which a sheet that is let go is flat again.
+const FLAT: f64 = 0.01;
 
 /// The fasteners of a mounted sheet in the order in which they are put in.
 #[derive(Clone, Debug, PartialEq)]
@@ -30,6 +40,19 @@ pub struct Mounting {
     pub apart: f64,
     /// The motions of the panels of the opened sheet on the board.
     pub opened: Configuration,
+    /// How the sheet is opened before; `None` for elastic hinges, which pull it flat again.
+    pub by_hand: Option<ByHand>,
+}
+
+/// The sheet is opened evenly and let go.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct ByHand {
+    /// Mean rotation of the hinges in the opened sheet (rad).
+    pub opened: f64,
+    /// Mean rotation that stays (rad).
+    pub stays: f64,
+    /// Largest moment of a hinge of the opened sheet (N mm).
+    pub moment: f64,
 }
 
 /// A fastener of a mounted sheet.
@@ -81,11 +104,15 @@ impl Mounting {
         let sheet = &deployment.sheet;
         let law = mechanics.law.prepare(&sheet.designs());
         let hinged = mechanics.hinged(sheet, &*law, false);
-        let end = &deployment.at_full_load().ok()?.configuration;
+        let last = deployment.at_full_load().ok()?;
+        let end = &last.configuration;
         let reactions = mechanics.solver.reactions(hinged, end);
         let attachments = mechanics.solver.attachment_points();
         let on_board = placed(scene, sheet, end);
-        let steps = mechanics.solver.mounted(hinged).ok()?;
+        let let_go = LetGo::new(scene, mechanics, deployment).ok()?;
+        let (released, rest) = (ReleasedLaw(&let_go.hinges), &let_go.end().configuration);
+        let released = mechanics.hinged(sheet, &released, false);
+        let steps = mechanics.solver.mounted(released, rest).ok()?;
         let count = mechanics.solver.fastened().len();
         let apart = steps.last().filter(|last| steps.len() == count && reaches(&last.path));
         let apart = apart.map_or(f64::INFINITY, |last| {
@@ -103,12 +130,17 @@ impl Mounting {
                 way: step.way,
                 pull: step.force,
                 holds: x.hypot(y),
-                damage: damage(&step.path),
-                outside: outside(&step.path),
+                damage: damage(&*law, &step.path),
+                outside: outside(&*law, &step.path),
                 sheet: step.end,
             }
         });
-        Some(Self { fasteners: fasteners.collect(), count, apart, opened: on_board })
+        let fasteners = fasteners.collect();
+        let [opened, stays] = [end, rest].map(|state| mean_rotation(sheet, state));
+        let moments = law.energies(&last.deformations, Order::Forces).into_iter();
+        let moment = moments.fold(0.0, |most, hinge| f64::max(most, hinge.forces[2].abs()));
+        let by_hand = (stays > FLAT * opened).then_some(ByHand { opened, stays, moment });
+        Some(Self { fasteners, count, apart, opened: on_board, by_hand })
     }
 
     /// Width and height of the smallest board behind the opened sheet (mm).
@@ -127,20 +159,32 @@ fn reaches(path: &[LoadStep]) -> bool {
     path.last().is_none_or(|last| last.status != Status::Diverged)
 }
 
+fn mean_rotation(sheet: &Sheet, state: &[Motion]) -> f64 {
+    let turned = sheet.hinges.iter().map(|hinge| {
+        let [a, b] = [hinge.panel_a(), hinge.panel_b()].map(|panel| state[panel][2]);
+        (b - a).abs()
+    });
+    turned.sum::<f64>() / sheet.hinges.len() as f64
+}
+
 /// Largest peak damage on a way.
-fn damage(path: &[LoadStep]) -> Option<f64> {
+fn damage(law: &dyn PreparedLaw, path: &[LoadStep]) -> Option<f64> {
     let of_step = |step: &LoadStep| {
-        let states = std::iter::zip(&step.damage, &step.inside);
+        let damage = law.damage(&step.deformations, false);
+        let states = std::iter::zip(damage, law.inside(&step.deformations));
         let known = states.map(|(damage, inside)| {
-            DamageMeasure::Peak.known(damage).or(Some(damage.d)).filter(|_| *inside)
+            DamageMeasure::Peak.known(&damage).or(Some(damage.d)).filter(|_| inside)
         });
-        (!step.damage.is_empty()).then_some(())?;
+        let known: Vec<Option<f64>> = known.collect();
+        (!known.is_empty()).then_some(())?;
         known.into_iter().try_fold(0.0, |most: f64, damage| Some(most.max(damage?)))
     };
     path.iter().try_fold(0.0, |most: f64, step| Some(most.max(of_step(step)?)))
 }
 
-fn outside(path: &[LoadStep]) -> usize {
-    let hinges = path.first().map_or(0, |step| step.inside.len());
-    (0..hinges).filter(|hinge| path.iter().any(|step| !step.inside[*hinge])).count()
+/// Number of hinges outside the training domain on a way.
+fn outside(law: &dyn PreparedLaw, path: &[LoadStep]) -> usize {
+    let inside: Vec<Vec<bool>> = path.iter().map(|step| law.inside(&step.deformations)).collect();
+    let hinges = inside.first().map_or(0, Vec::len);
+    (0..hinges).filter(|hinge| inside.iter().any(|step| !step[*hinge])).count()
 }

@@ -1,14 +1,18 @@
 //! A deployed sheet that is unloaded: its equilibrium without loads, with hinges that are elastic
 //! about their residual deformations.
 
+use design::equilibrium::load_step::LoadStep;
 use design::hinge_law::{Order, PreparedLaw, Release, ReleasedLaw};
-use design::objective::design_problem::{Deployment, DesignError, DesignProblem, converged};
+use design::objective::design_problem::{
+    Deployment, DesignError, DesignProblem, Mechanics, converged,
+};
 use design::sheet::kinematics::corner_distances;
-use hinge::HingeDeformation;
+use faer::{Mat, Side, linalg::solvers::Solve};
+use hinge::{HingeDeformation, ReleasedHinge};
 use scene::Scene;
 use serde::Serialize;
-use std::array::from_fn;
-use support::statistics::rms_and_maximum;
+use std::{array::from_fn, iter::zip};
+use support::{fault, statistics::rms_and_maximum};
 use surrogate::Springback;
 
 /// The residual opening of a sheet.
@@ -45,7 +49,6 @@ impl ResidualShape {
 pub fn unload(
     scene: &Scene,
     problem: &DesignProblem,
-    law: &Springback,
     deployment: &Deployment,
 ) -> Result<ResidualShape, String> {
     let outside = deployment.hinges_outside();
@@ -54,7 +57,7 @@ pub fn unload(
             "{outside} hinges are outside the training domain at full load, where the law of released hinges is not known"
         ));
     }
-    let shape = unloaded(scene, problem, law, deployment).map_err(|error| error.to_string())?;
+    let shape = unloaded(scene, problem, deployment).map_err(|error| error.to_string())?;
     let [loaded, free] = shape.mean_rotations().map(f64::to_degrees);
     if free > loaded {
         return Err(format!(
@@ -68,26 +71,73 @@ pub fn unload(
 fn unloaded(
     scene: &Scene,
     problem: &DesignProblem,
-    law: &Springback,
     deployment: &Deployment,
 ) -> Result<ResidualShape, DesignError> {
     let mechanics = problem.model.equilibrium().map_err(DesignError::from)?;
     let loaded = deployment.at_full_load()?;
-    let (sheet, designs) = (&deployment.sheet, deployment.sheet.designs());
-    let prepared = mechanics.law.prepare(&designs);
-    let hinges =
-        Release { law, scale: scene.scale() }.hinges(&*prepared, &designs, &loaded.deformations);
-    let released = ReleasedLaw(&hinges);
-    let hinged = mechanics.hinged(sheet, &released, false);
-    let path = mechanics.solver.unload(hinged, loaded.configuration.clone())?;
-    let free = converged(path.last().expect("a path has at least one step"))?;
-    let moved = corner_distances(sheet, &loaded.configuration, &free.configuration);
-    let rotations = std::iter::zip(&loaded.deformations, &free.deformations);
+    let let_go = LetGo::new(scene, mechanics, deployment)?;
+    let free = converged(let_go.end())?;
+    let moved = corner_distances(&deployment.sheet, &loaded.configuration, &free.configuration);
+    let rotations = zip(&loaded.deformations, &free.deformations);
     Ok(ResidualShape {
         rotations: rotations.map(|(on, off)| [on.theta, off.theta]).collect(),
         corners: rms_and_maximum(moved),
-        snaps: path.iter().any(|step| step.jumps > 0),
+        snaps: let_go.path.iter().any(|step| step.jumps > 0),
     })
+}
+
+/// A sheet that was opened and let go.
+pub(crate) struct LetGo {
+    /// Its hinges.
+    pub hinges: Vec<ReleasedHinge>,
+    /// Its path while the loads are taken off.
+    path: Vec<LoadStep>,
+}
+
+impl LetGo {
+    /// A deployed sheet that is let go, by the law of released hinges of its scene; without one its
+    /// hinges are as stiff on the way back as flat ones.
+    pub(crate) fn new(
+        scene: &Scene,
+        mechanics: &Mechanics,
+        deployment: &Deployment,
+    ) -> Result<Self, DesignError> {
+        let designs = deployment.sheet.designs();
+        let loaded = deployment.at_full_load()?;
+        let (prepared, reached) = (mechanics.law.prepare(&designs), &loaded.deformations);
+        let hinges = match &scene.springback {
+            Some(law) => {
+                Release { law, scale: scene.scale() }.hinges(&*prepared, &designs, reached)
+            }
+            None => elastic(&*prepared, reached)
+                .ok_or_else(|| fault!("flat hinges are not stable by their law"))?,
+        };
+        let released = ReleasedLaw(&hinges);
+        let hinged = mechanics.hinged(&deployment.sheet, &released, false);
+        let path = mechanics.solver.unload(hinged, loaded.configuration.clone())?;
+        Ok(Self { hinges, path })
+    }
+
+    /// The sheet without loads, if the step has converged.
+    pub(crate) fn end(&self) -> &LoadStep {
+        self.path.last().expect("a path has at least one step")
+    }
+}
+
+/// The hinges that reached some states of a law, as stiff as flat ones: r = x - K^-1 f. `None` if
+/// flat ones are not stable.
+fn elastic(law: &dyn PreparedLaw, reached: &[HingeDeformation]) -> Option<Vec<ReleasedHinge>> {
+    let flat = law.energies(&vec![HingeDeformation::default(); reached.len()], Order::Design);
+    let energies = law.energies(reached, Order::Forces);
+    let hinges = zip(reached, energies).zip(flat).map(|((at, energy), flat)| {
+        let stiffness = flat.tangent;
+        let factor = Mat::from_fn(3, 3, |i, j| stiffness[i][j]).llt(Side::Lower).ok()?;
+        let sprung = factor.solve(Mat::from_fn(3, 1, |i, _| energy.forces[i]));
+        let at = at.to_array();
+        let rest: [f64; 3] = from_fn(|i| at[i] - sprung[(i, 0)]);
+        Some(ReleasedHinge { rest: rest.into(), stiffness })
+    });
+    hinges.collect()
 }
 
 /// Over-opening by a person, as a fraction of the opening.
@@ -115,7 +165,7 @@ pub fn moment_after_overshoot(
         return None;
     }
     let steps = TOO_FAR * last.mean_opening() / opens;
-    let over: Vec<HingeDeformation> = std::iter::zip(&before.deformations, &last.deformations)
+    let over: Vec<HingeDeformation> = zip(&before.deformations, &last.deformations)
         .map(|(before, last)| {
             let (before, last) = (before.to_array(), last.to_array());
             HingeDeformation::from(from_fn(|i| last[i] + steps * (last[i] - before[i])))
@@ -127,7 +177,7 @@ pub fn moment_after_overshoot(
     let hinges = Release { law, scale: scene.scale() }.hinges(&*prepared, &designs, &over);
     let holds = |law: &dyn PreparedLaw| -> f64 {
         let energies = law.energies(&last.deformations, Order::Forces);
-        let hinges = std::iter::zip(&energies, &last.deformations);
+        let hinges = zip(&energies, &last.deformations);
         hinges.map(|(energy, state)| energy.forces[2] * state.theta).sum()
     };
     let fraction = holds(&ReleasedLaw(&hinges)) / holds(&*prepared);

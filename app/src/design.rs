@@ -11,10 +11,10 @@ use output::{
 };
 use scene::{
     Scene,
-    design_run::{Designed, LEVELS, OnStep, inverse_design},
+    design_run::{Designed, LEVELS},
     run_inputs::{SCENE_FILE, holds_a_run},
 };
-use std::{fs::File, path::Path, sync::atomic::AtomicBool};
+use std::{fs::File, path::Path};
 use support::unread;
 
 /// Width of the pictures (px).
@@ -38,12 +38,6 @@ pub fn hold(scene: &Scene, restart: bool) -> Result<File> {
         }
     }
     Ok(held)
-}
-
-/// Searches at the level of the scene and writes the results; `force` also writes cut files of a
-/// design with errors.
-pub fn search(scene: &Scene, force: bool, stop: &AtomicBool, progress: OnStep) -> Result<Report> {
-    write_run(scene, &inverse_design(scene, stop, progress)?, force)
 }
 
 /// Writes the results of a design that was found on several levels.
@@ -93,10 +87,7 @@ pub fn write_run(scene: &Scene, designed: &Designed, force: bool) -> Result<Repo
 pub fn ended(scene: &Scene, report: &Report) -> Result<()> {
     match &report.ended {
         Ended::Completed | Ended::Settled => {}
-        Ended::Stopped => bail!(Unfinished {
-            left: scene.config.optimiser.steps - report.steps,
-            what: "design steps"
-        }),
+        Ended::Stopped => bail!(unfinished(scene, report.coarse_searches.len(), report.steps)),
         Ended::Stuck { reason } => bail!("the search is stuck: {reason}"),
     }
     let errors: Vec<String> = report.errors().map(Warning::to_string).collect();
@@ -106,6 +97,12 @@ pub fn ended(scene: &Scene, report: &Report) -> Result<()> {
         errors.join("; ")
     );
     Ok(())
+}
+
+/// A stopped run after `coarse` searches at coarser levels, with `made` steps in all.
+fn unfinished(scene: &Scene, coarse: usize, made: usize) -> Unfinished {
+    let all = (coarse + 1) * scene.config.optimiser.steps;
+    Unfinished { left: all.saturating_sub(made), what: "design steps" }
 }
 
 /// Writes the PNG of every picture in the run folder that has an SVG.

@@ -13,6 +13,7 @@ use scene::{Scene, placement::NOT_SEEN};
 /// it. A sheet that shows too little of its target is refused unless `anyway`.
 pub fn fit_to_target(scene: &Scene, anyway: bool) -> Result<(FittedScene, String)> {
     announce("laying an even pattern over the target, in some seconds");
+    scene.target.notes.iter().for_each(|note| announce(&format!("the drawing: {note}")));
     let fit = fitted(scene)?;
     let expected = expected(&fit, scene.material.thickness);
     ensure!(

@@ -2,9 +2,9 @@
 
 mod budget;
 mod deployed;
-mod estimate;
 mod facts;
 mod findings;
+mod force_spreads;
 mod hinge_row;
 pub(crate) mod numbers;
 mod reached;
@@ -12,8 +12,8 @@ mod text;
 
 pub(crate) use budget::BUDGET_HEADING;
 pub(crate) use deployed::{extent, miss};
-pub(crate) use estimate::force_spreads;
-pub(crate) use facts::mounting_step;
+pub(crate) use facts::{mounting_step, open_by_hand};
+pub(crate) use force_spreads::force_spreads;
 pub(crate) use numbers::rounded;
 pub(crate) use text::worst_first;
 
@@ -49,9 +49,9 @@ pub struct Report {
     pub title: String,
     /// Why the run ended.
     pub ended: Ended,
-    /// The searches at coarser levels that found the start, if there were any.
+    /// The searches at coarser levels before, if there were any.
     pub coarse_searches: Vec<CoarseSearch>,
-    /// Number of steps after the start.
+    /// Number of steps after the start, of all searches.
     pub steps: usize,
     /// The terms of the scores in words, with their units.
     #[serde(skip)]
@@ -172,7 +172,7 @@ impl Report {
         let facts = facts(&deployed, &run);
         let miss = miss(run.seen, run.after.outline_error, deployed.flat_size());
         let hinges = deployed.hinges;
-        let (search, coarse_searches) = (&designed.search, &designed.coarse_searches);
+        let coarse_searches = &designed.coarse_searches;
         let last = coarse_searches.last().filter(|search| search.finer == Level::Final);
         let residual = last.map(|search| search.difference.corners[1]);
         let errors = ErrorBudget::new(scene, problem, deployment, residual);
@@ -182,12 +182,9 @@ impl Report {
             title: scene.config.title.clone(),
             ended: designed.ended.clone(),
             coarse_searches: coarse_searches.clone(),
-            steps: search.last().step,
+            steps: designed.steps(),
             terms: problem.objective.labels(),
-            before: match coarse_searches.first() {
-                Some(first) => first.start.clone(),
-                None => Scores::new(&problem.objective, &designed.start),
-            },
+            before: Scores::new(&problem.objective, &designed.start),
             after: run.after,
             budget: errors.map(|errors| Budget::new(errors, left_out(scene), dead_loads)),
             facts,

@@ -1,7 +1,7 @@
 //! A search at a coarser level than its run, as the state of the run keeps it.
 
 use crate::level::Level;
-use design::objective::scores::Scores;
+use design::optimise::outer_loop::StepRecord;
 use serde::{Deserialize, Serialize};
 
 /// The difference of two levels of one sheet, in the state that is compared with the target.
@@ -23,21 +23,34 @@ pub struct LevelDifference {
 pub struct CoarseSearch {
     /// The level of the search.
     pub level: Level,
-    /// The scores of its start.
-    pub start: Scores,
-    /// Its steps.
-    pub steps: usize,
+    /// One record per step, beginning with the record of its start.
+    pub history: Vec<StepRecord>,
     /// The finer level.
     pub finer: Level,
     /// The difference of the design to the finer level.
     pub difference: LevelDifference,
-    /// The tolerance of the panel corners (mm).
-    pub tolerance: f64,
+    /// The tolerance of the panel corners (mm); `None` if the finer level searches on in any case.
+    pub tolerance: Option<f64>,
+    /// Their error by the mesh of the windows (mm), which no learned level lowers; zero if it is
+    /// unknown.
+    #[serde(default)]
+    pub mesh: f64,
 }
 
 impl CoarseSearch {
-    /// Whether the panel corners differ by the tolerance at most.
+    /// Its steps.
+    pub fn steps(&self) -> usize {
+        self.history.len() - 1
+    }
+
+    /// Whether the panel corners differ by less than a length (mm).
+    pub fn is_within(&self, length: f64) -> bool {
+        self.difference.corners[1] <= length
+    }
+
+    /// Whether no finer level is needed: the panel corners differ by the tolerance at most, or by
+    /// what the mesh of the windows makes uncertain.
     pub fn suffices(&self) -> bool {
-        self.difference.corners[1] <= self.tolerance
+        self.tolerance.is_some_and(|tolerance| self.is_within(tolerance.max(self.mesh)))
     }
 }

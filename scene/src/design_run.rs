@@ -15,7 +15,7 @@ use design::{
         design_problem::{DesignProblem, Evaluation},
         terms::panel_width::thinnest_panel,
     },
-    optimise::outer_loop::{Ended, SearchState, Until, optimise},
+    optimise::outer_loop::{Ended, SearchState, StepRecord, Until, optimise},
     pattern::design_vector::DesignVector,
 };
 use serde::{Deserialize, Serialize};
@@ -51,8 +51,8 @@ pub struct Designed {
     pub start: Evaluation,
     /// The evaluation of the best design, whose path is followed from the flat sheet.
     pub best: Evaluation,
-    /// The searches at coarser levels that found the start; empty if the search began at the start
-    /// of the scene.
+    /// The searches at coarser levels, with whose best design the search began; empty if it began at
+    /// the start of the scene.
     pub coarse_searches: Vec<CoarseSearch>,
 }
 
@@ -125,17 +125,22 @@ pub fn left_run(scene: &Scene) -> Result<Option<(Ended, DesignVector)>, Fault> {
     Ok(state.map(|state| (state.left(), state.search.best)))
 }
 
+/// Number of steps of the run in the scene's run folder, without the searches at coarser levels.
+pub fn steps_made(scene: &Scene) -> Result<usize, Fault> {
+    Ok(RunState::read(scene)?.map_or(0, |state| state.search.last().step))
+}
+
 /// The keys of a scene by which a design is found. They change neither its sheet nor how it
 /// deploys.
 const SEARCH_KEYS: [&str; 3] = ["objective", "optimiser", "tolerances"];
 
-/// The searches at coarser levels that found the start of a run.
+/// The searches at coarser levels before a search.
 #[derive(Default)]
 pub struct Earlier {
     /// What is kept of them, the coarsest first.
     pub searches: Vec<CoarseSearch>,
-    /// The last one, with whose optimiser the run begins.
-    pub optimiser: Option<SearchState>,
+    /// The last one, from whose best design and with whose optimiser the next one goes on.
+    pub last: Option<SearchState>,
 }
 
 /// Called with the level and the state of a search after each of its steps.
@@ -152,6 +157,23 @@ pub struct BegunRun {
 }
 
 impl Designed {
+    /// Number of steps of all its searches.
+    pub fn steps(&self) -> usize {
+        let coarse = self.coarse_searches.iter().map(CoarseSearch::steps);
+        coarse.sum::<usize>() + self.search.last().step
+    }
+
+    /// The records of all its searches. The start of each but the first is the end of the search
+    /// before, at another level.
+    pub fn history(&self) -> Vec<StepRecord> {
+        let coarse = self.coarse_searches.iter().map(|search| &search.history);
+        let mut all: Vec<StepRecord> = Vec::new();
+        for record in coarse.chain([&self.search.history]).flatten() {
+            all.push(StepRecord { step: all.len(), ..record.clone() });
+        }
+        all
+    }
+
     /// The start of a scene before any step of its search, with its path followed from the flat
     /// sheet until `stop` becomes true.
     pub fn at_start(scene: &Scene, stop: Arc<AtomicBool>) -> Result<Self, Fault> {
@@ -192,8 +214,9 @@ impl BegunRun {
         SearchState::new(&self.problem, start, &self.start, method, rate)
     }
 
-    /// Runs the search in the run folder of the scene, `until` then or to all steps of the scene;
-    /// continues from the state there if there is one.
+    /// Runs the search in the run folder of the scene, `until` then; continues from the state there
+    /// if steps have been made. Without `until` it makes all steps of the scene; after searches at
+    /// coarser levels as many of them as it takes to converge, unless the run was made with fewer.
     ///
     /// `progress` is called after every step; the run stops at the end
     /// of the step during which `stop` becomes true.
@@ -206,22 +229,30 @@ impl BegunRun {
     ) -> Result<Designed, Fault> {
         let Self { scene, problem, start } = &self;
         let (level, steps) = (scene.config.level, scene.config.optimiser.steps);
-        let until = until.unwrap_or(steps.into());
         let folder = scene.output();
         std::fs::create_dir_all(&folder).map_err(unused(&folder))?;
         let path = folder.join(STATE_FILE);
         wide_enough(scene, start)?;
-        let (searches, mut search) = match RunState::read(scene)? {
-            Some(state) => (state.coarse_searches, state.search),
-            None => {
-                let search = match &earlier.optimiser {
-                    Some(coarser) => SearchState::after(coarser, problem, scene.start(), start),
+        let begun = RunState::read(scene)?
+            .filter(|state| earlier.last.is_none() || state.search.last().step > 0);
+        // More steps than before are all made.
+        let more = begun.as_ref().is_some_and(|state| steps > state.scene.optimiser.steps);
+        let (searches, mut search) = match (begun, &earlier.last) {
+            (Some(state), _) => (state.coarse_searches, state.search),
+            (None, last) => {
+                let search = match last {
+                    Some(coarser) => {
+                        let evaluation = problem.evaluate(&coarser.best).map_err(at(START))?;
+                        SearchState::after(coarser, problem, coarser.best.clone(), &evaluation)
+                    }
                     None => self.begun(),
                 };
                 progress(level, &search);
                 (earlier.searches.clone(), search)
             }
         };
+        let converged = !searches.is_empty() && !more;
+        let until = until.unwrap_or(Until { steps, converged });
         let inputs = run_inputs::keep(scene)?;
         let save = |search: &SearchState, ended: Option<&Ended>| {
             let state = RunState {
@@ -263,15 +294,6 @@ impl BegunRun {
         };
         Ok(Designed { scene, problem, ended, search, start, best, coarse_searches })
     }
-}
-
-/// Runs the search of a scene in its run folder; see [`BegunRun::search`].
-pub fn inverse_design(
-    scene: &Scene,
-    stop: &AtomicBool,
-    progress: OnStep,
-) -> Result<Designed, Fault> {
-    BegunRun::new(scene.clone(), None)?.search(&Earlier::default(), None, stop, progress)
 }
 
 /// An error if a panel of the start is so thin that the barrier of the minimum width is infinite.

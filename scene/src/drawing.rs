@@ -7,7 +7,6 @@ pub mod drawn_outline;
 mod dxf_contours;
 mod holes;
 mod joined_lines;
-mod near_origin;
 pub mod outline_points;
 mod spline;
 mod svg_path;

@@ -95,7 +95,7 @@ pub struct SceneConfig {
     /// Settings of the equilibrium solver: of code, not keys.
     #[serde(skip)]
     pub solver: SolverSettings,
-    /// The target outline; its length must be 0.2 to 3 times the perimeter of the flat sheet.
+    /// The target outline; its longer side must be 0.2 to 6 times as long as the flat sheet's.
     pub target: TargetShape,
     /// The objective (16) and its weights.
     #[serde(default)]

@@ -46,6 +46,12 @@ pub fn scene_file(path: &Path) -> Result<PathBuf, Fault> {
     struct Named {
         inputs: InputHashes,
     }
+    let is_drawing = |end| path.extension().is_some_and(|own| own.eq_ignore_ascii_case(end));
+    ensure!(
+        !["svg", "dxf"].into_iter().any(is_drawing),
+        "{} is a drawing: `kirigami init FOLDER --target` makes a scene of it",
+        path.display()
+    );
     if !path.is_dir() {
         return Ok(path.to_owned());
     }

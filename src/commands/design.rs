@@ -7,10 +7,10 @@ use crate::ui::{
     self, interrupt, processors,
     with_unit::{self, Accuracy},
 };
-use analysis::refinement::refine;
+use analysis::refinement::{inverse_design, refine, search};
 use anyhow::{Result, bail, ensure};
 use app::{
-    design::{ended, hold, search, write_refined},
+    design::{ended, hold, write_run},
     design_runs::{Run, compare, refuse_shared_folders},
     failure::Unfinished,
     fitting::fit_to_target,
@@ -23,7 +23,11 @@ use design::{
     optimise::outer_loop::StepRecord,
 };
 use output::report::Report;
-use scene::{Level, Scene, SceneConfig, design_run::OnStep, run_inputs::scene_file};
+use scene::{
+    Level, Scene, SceneConfig,
+    design_run::OnStep,
+    run_inputs::{SCENE_FILE, scene_file},
+};
 use std::path::{Path, PathBuf};
 use support::worker_pool::{NoThread, Reports, work_through};
 
@@ -43,15 +47,15 @@ pub struct DesignCommand {
     /// Weights of the hinge energy, instead of the scene's
     #[arg(long, value_name = "FILE")]
     weights: Option<PathBuf>,
-    /// The level, instead of the scene's: how much of the hinges is modelled; see `kirigami
-    /// levels`. At `final` the hinges are solved by finite elements after the search, and it goes
+    /// Search at this level alone, instead of the scene's: how much of the hinges is modelled; see
+    /// `kirigami levels`. Without it a search at `standard` or `fine` begins at `draft`. At `final` the hinges are solved by finite elements after the search, and it goes
     /// on with them: hours, which are stated first
     #[arg(long, value_name = "LEVEL", value_parser = with_unit::level_up_to(Level::Final))]
     level: Option<Level>,
     /// How accurately the corners of the panels are to be known: a length such as 0.5mm, or a part
     /// of the longer side of the sheet such as 0.2%. The search begins at `draft`. While the
     /// difference to the next finer level is larger, that level, `standard` and then `fine`,
-    /// continues from the converged design. The next finer level evaluates the result
+    /// continues from the design. The next finer level evaluates the result
     #[arg(long, value_name = "ACCURACY", value_parser = with_unit::accuracy, conflicts_with_all = ["level", "steps"])]
     within: Option<Accuracy>,
     /// Run folder, instead of the scene's. Of several runs: the folder of the table, designs.md and
@@ -63,7 +67,7 @@ pub struct DesignCommand {
     /// folder seed-N of its run folder. The scene needs a random start: optimiser.start_noise
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..=10_000))]
     seeds: u64,
-    /// Number of search steps, instead of the scene's
+    /// Number of search steps, instead of the scene's; of several levels, of each at most
     #[arg(long, value_name = "N")]
     steps: Option<usize>,
     /// First lay an even pattern over the target, in the space of the sheet, as `init --target`
@@ -110,7 +114,10 @@ impl DesignCommand {
             for seed in 0..self.seeds {
                 let scene = self.scene(file, |config| {
                     if let Some(out) = out {
-                        let name = if file.is_dir() { file.file_name() } else { file.file_stem() };
+                        // The scenes of `init` have the names of their folders.
+                        let named = file.parent().filter(|_| file.ends_with(SCENE_FILE));
+                        let named = named.map_or(file.file_stem(), Path::file_name);
+                        let name = if file.is_dir() { file.file_name() } else { named };
                         config.output = out.join(name.unwrap_or_default());
                     }
                     config.optimiser.seed += seed;
@@ -183,19 +190,20 @@ impl DesignCommand {
     fn design(&self, scene: &Scene, progress: OnStep) -> Result<Report> {
         let _held = hold(scene, self.restart)?;
         let stop = interrupt::stop_flag()?;
-        match self.within {
-            None if self.by_elements(scene.config.level) => {
-                self.search_by_elements(scene, progress)
-            }
-            None => search(scene, self.force, stop, progress),
-            Some(accuracy) => {
+        let own = scene.config.level;
+        let designed = match (self.within, self.level) {
+            (None, Some(_)) if self.by_elements(own) => self.search_by_elements(scene, progress)?,
+            (None, Some(_)) => search(scene, &[own], None, stop, progress)?,
+            (None, None) => inverse_design(scene, stop, progress)?,
+            (Some(accuracy), _) => {
                 let tolerance = match accuracy {
                     Accuracy::Length(mm) => mm,
                     Accuracy::Part(part) => part * scene.config.sheet.outline().size(),
                 };
-                write_refined(&refine(scene, tolerance, stop, progress)?, self.force)
+                refine(scene, tolerance, stop, progress)?
             }
-        }
+        };
+        write_run(scene, &designed, self.force)
     }
 
     /// Whether the hinges of a scene at a level are still to be solved.
@@ -204,7 +212,7 @@ impl DesignCommand {
     }
 
     #[cfg(not(feature = "pipeline"))]
-    fn search_by_elements(&self, _: &Scene, _: OnStep) -> Result<Report> {
+    fn search_by_elements(&self, _: &Scene, _: OnStep) -> Result<scene::design_run::Designed> {
         bail!(
             "the level `final` needs finite elements: install the whole program, as the README says"
         )

@@ -12,6 +12,7 @@ use crate::{
     run_listing::files_of_run,
 };
 use analysis::levels::levels;
+use analysis::refinement::inverse_design;
 use anyhow::{Context, Result, anyhow, ensure};
 use app::{
     cut::{machine_file_of_run, tiles_of_run},
@@ -21,7 +22,7 @@ use app::{
     shell_word::shell_word,
 };
 use design::optimise::outer_loop::Ended;
-use scene::{Scene, SceneConfig, design_run::inverse_design};
+use scene::{Scene, SceneConfig};
 use serde::Serialize;
 use serde_json::{Value, json};
 use std::{

@@ -49,7 +49,8 @@ pub fn final_design(
     let mut earlier = Earlier::default();
     for searched in 1..=SEARCHES {
         let level = at.config.level;
-        let designed = BegunRun::new(at, None)?.search(&earlier, None, stop, progress)?;
+        let steps = at.config.optimiser.steps.into();
+        let designed = BegunRun::new(at, None)?.search(&earlier, Some(steps), stop, progress)?;
         if designed.ended == Ended::Stopped {
             return Ok(designed);
         }
@@ -59,11 +60,11 @@ pub fn final_design(
         solved_hinges(&found).write(&file)?;
         let own = AtLevel::new(level, &designed.problem, found.by_law());
         let finer = AtLevel::new(Level::Final, &corrected, found.by_elements());
-        let coarse = own.coarse_search(&designed.search, &finer, tolerance);
+        let coarse = own.coarse_search(&designed.search, &finer, Some(tolerance), 0.0);
         let is_last = coarse.suffices() || searched == SEARCHES;
-        let mut config = designed.scene.starting_at(&designed.search.best);
+        let mut config = designed.scene.config.clone();
         earlier.searches.push(coarse);
-        earlier.optimiser = Some(designed.search);
+        earlier.last = Some(designed.search);
         config.level = Level::Final;
         if let Some(files) = &mut config.surrogate {
             files.solved_hinges = Some(file);

@@ -2,6 +2,7 @@
 //! one.
 
 use analysis::level_difference::{AtLevel, deployed};
+use analysis::refinement::inverse_design;
 use design::hinge_law::{MeanLaw, Order};
 use design::optimise::outer_loop::{Ended, SearchState, Until, optimise};
 use design::optimise::search::SearchMethod;
@@ -10,7 +11,7 @@ use hinge::{HingeDeformation, HingeDesign};
 use scene::{Level, Scene};
 use std::convert::Infallible;
 use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
 use testkit::derivatives::{TaylorRemainders, assert_close};
 
 fn scene(name: &str) -> Scene {
@@ -79,6 +80,37 @@ fn a_level_goes_on_with_the_optimiser_of_the_one_before() {
         [after, new(&standard, start)].map(|search| searched(&standard, search, 5.into()));
     let fall = |search: &SearchState| search.history[0].scores.loss - search.last().scores.loss;
     assert!(fall(&after) > 1.5 * fall(&fresh), "{} {}", fall(&after), fall(&fresh));
+}
+
+/// A design begins at `draft` and ends at its own level, no farther from its target; a run that was
+/// stopped at `draft` goes on there, to the same end.
+#[test]
+fn a_design_begins_at_the_cheapest_level_and_is_the_same_after_a_stop() {
+    let folder = tempfile::tempdir().unwrap();
+    let designed = |name: &str, stop_at: usize| {
+        let mut config = scene("a4-plate.toml").config;
+        config.output = folder.path().join(name);
+        config.optimiser.steps = 12;
+        let plate = scene("a4-plate.toml").changed(config).unwrap();
+        let (stop, mut levels) = (AtomicBool::new(false), Vec::new());
+        let designed = inverse_design(&plate, &stop, &mut |level, search| {
+            levels.push(level);
+            stop.fetch_or(search.last().step == stop_at, Ordering::Relaxed);
+        });
+        levels.dedup();
+        (designed.unwrap(), levels)
+    };
+    let (whole, levels) = designed("whole", usize::MAX);
+    assert_eq!(levels, [Level::Draft, Level::Standard]);
+    assert_eq!((&whole.ended, whole.scene.config.level), (&Ended::Completed, Level::Standard));
+    assert_eq!(whole.coarse_searches[0].steps(), 12);
+    assert!(whole.best.loss < whole.start.loss);
+    let (stopped, _) = designed("stopped", 5);
+    assert_eq!((stopped.steps(), stopped.ended), (5, Ended::Stopped));
+    let (continued, levels) = designed("stopped", usize::MAX);
+    assert_eq!(levels, [Level::Draft, Level::Standard]);
+    assert_eq!(continued.search.best, whole.search.best);
+    assert_eq!(continued.steps(), whole.steps());
 }
 
 #[test]

@@ -13,7 +13,7 @@ use crate::{
         supports::{Dof, Support},
     },
     geometry::plane::{complex, point, turn_less_one},
-    sheet::{cut_sheet::Panel, kinematics::Configuration},
+    sheet::kinematics::{Configuration, Motion},
 };
 use support::{Fault, refuse};
 
@@ -51,14 +51,18 @@ impl EquilibriumSolver {
         if moves && only_fasteners && panels.len() > 1 { panels } else { Vec::new() }
     }
 
-    /// The fasteners in their order, up to the first whose hole does not reach its place. An error
-    /// if there are none.
-    pub fn mounted(&self, sheet: HingedSheet) -> Result<Vec<MountingStep>, Fault> {
+    /// The fasteners in their order, up to the first whose hole does not reach its place; the sheet
+    /// begins in the configuration in which it rests. An error if there are none.
+    pub fn mounted(
+        &self,
+        sheet: HingedSheet,
+        resting: &[Motion],
+    ) -> Result<Vec<MountingStep>, Fault> {
         let panels = self.fastened();
         let [first, second, ..] = panels[..] else {
             refuse!("the sheet has no fasteners that open it");
         };
-        let flat = self.laid(sheet, [first, second]);
+        let flat = self.laid(sheet, resting, [first, second]);
         let mut steps = vec![MountingStep {
             panel: first,
             way: [0.0; 2],
@@ -79,22 +83,28 @@ impl EquilibriumSolver {
         Ok(steps)
     }
 
-    /// The flat sheet with the hole of a panel on its place, turned so that the hole of another lies
-    /// in the direction of its own.
-    fn laid(&self, sheet: HingedSheet, pair: [usize; 2]) -> Configuration {
+    /// The resting sheet with the hole of a panel on its place, turned so that the hole of another
+    /// lies in the direction of its own.
+    fn laid(
+        &self,
+        sheet: HingedSheet,
+        resting: &[Motion],
+        [first, second]: [usize; 2],
+    ) -> Configuration {
         let panels = &sheet.sheet.panels;
         let motions = self.support_motions();
-        let [from, to] = pair.map(|panel| complex(panels[panel].reference));
-        let [shift, of_other] = pair.map(|panel| {
-            let [x, y, _] = motions[panel];
-            complex([x, y])
-        });
-        let angle = ((to + of_other - from - shift) / (to - from)).arg();
-        let moved = |panel: &Panel| {
-            let [x, y] = point(shift + turn_less_one(angle) * (complex(panel.reference) - from));
-            [x, y, angle]
+        let at =
+            |panel: usize, [x, y, _]: Motion| complex(panels[panel].reference) + complex([x, y]);
+        let from = at(first, resting[first]);
+        let [place, other] = [first, second].map(|panel| at(panel, motions[panel]));
+        let angle = ((other - place) / (at(second, resting[second]) - from)).arg();
+        let moved = |(panel, motion): (usize, &Motion)| {
+            let [x, y, phi] = *motion;
+            let turned = turn_less_one(angle) * (at(panel, *motion) - from);
+            let [x, y] = point(complex([x, y]) + place - from + turned);
+            [x, y, phi + angle]
         };
-        panels.iter().map(moved).collect()
+        resting.iter().enumerate().map(moved).collect()
     }
 
     /// Pulls the hole of the last of some panels to its place; the others are on theirs.
@@ -180,7 +190,8 @@ mod tests {
         let hinged =
             HingedSheet { sheet: &sheet, law: &*law, contact: None, damage_gradient: false };
         assert_eq!(solver.fastened(), [0, 8, 2]);
-        let steps = solver.mounted(hinged).unwrap();
+        let flat = vec![[0.0; 3]; GRID.panel_count()];
+        let steps = solver.mounted(hinged, &flat).unwrap();
         let panels: Vec<usize> = steps.iter().map(|step| step.panel).collect();
         assert_eq!(panels, [0, 8, 2]);
         for (count, step) in steps.iter().enumerate() {

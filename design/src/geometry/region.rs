@@ -144,7 +144,7 @@ impl Region {
 }
 
 /// Intersection over union of what one sees of opened panels and a drawing with its holes: gaps up
-/// to 8 % of the longer side of the drawing are closed.
+/// to 8 % of the longer side of the drawing, or to the width of a panel, are closed.
 pub fn seen(panels: Vec<Contour>, drawing: &Region) -> f64 {
     let closed = as_seen(panels, drawing);
     closed.common(drawing).area() / closed.union(drawing).area()
@@ -154,7 +154,12 @@ pub fn seen(panels: Vec<Contour>, drawing: &Region) -> f64 {
 /// union of panels that touch, a corner is lost now and then on the way back.
 pub fn as_seen(panels: Vec<Contour>, drawing: &Region) -> Region {
     const GAP: f64 = 0.04;
-    let gap = GAP * drawing.longer_side();
+    // Squares that are turned by a right angle are half a side from the middle of their gap; panels
+    // are trimmed.
+    const OF_PANEL: f64 = 0.6;
+    let area: f64 = panels.iter().map(|panel| polygon::area(panel)).sum();
+    let panel = (area / panels.len() as f64).sqrt();
+    let gap = f64::max(GAP * drawing.longer_side(), OF_PANEL * panel);
     let grown = panels.into_iter().flat_map(|panel| {
         Region { polygons: vec![vec![panel]] }.offset(gap, Corners::Round).polygons
     });

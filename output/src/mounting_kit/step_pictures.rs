@@ -3,7 +3,7 @@
 use crate::{
     display::{Canvas, Style, Text},
     drawing::page::{ACCENT, INK, MUTED, panels},
-    report::mounting_step,
+    report::{mounting_step, open_by_hand},
 };
 use analysis::mounting::{Fastener, Mounting};
 use design::{
@@ -19,7 +19,7 @@ const LETTERS: f64 = 2.3;
 const LINES: f64 = 4.2;
 const LETTER: f64 = 1.75;
 /// Height of the text below a picture, and the distance of pictures (mm).
-const TEXT: f64 = 5.0 * LINES;
+const TEXT: f64 = 6.0 * LINES;
 const APART: f64 = 6.0;
 /// Lines of panels, crosses and arrows, the arms of a cross, and the radius of a fastener (mm).
 const THIN: f64 = 0.12;
@@ -28,6 +28,9 @@ const ARM: f64 = 1.6;
 const FASTENER: f64 = 0.9;
 /// Length and half width of the head of an arrow (mm).
 const HEAD: [f64; 2] = [2.4, 0.9];
+/// What is done before.
+const FIRST: &str = "Cut the sheet. Move every panel back and forth once, so that no panel sticks to the next. Draw the crosses of the template on the \
+                     board. The numbers at holes are those of their crosses.";
 /// Columns of a picture of all steps, and the width of a cell there (mm).
 const COLUMNS: usize = 3;
 const CELL: [f64; 2] = [80.0, 95.0];
@@ -48,9 +51,14 @@ impl<'a> StepPictures<'a> {
         Self { sheet, mounting, extent: bounds(corners) }
     }
 
-    /// Number of pictures: the flat sheet, and one a fastener.
+    /// Number of pictures: the flat sheet, the sheet opened by hand, and one a fastener.
     pub(super) fn count(&self) -> usize {
-        self.mounting.fasteners.len() + 1
+        self.mounting.fasteners.len() + self.before()
+    }
+
+    /// Number of pictures before the first fastener.
+    fn before(&self) -> usize {
+        1 + usize::from(self.mounting.by_hand.is_some())
     }
 
     /// Draws a step into a rectangle of a page (mm), its text below its picture.
@@ -61,18 +69,32 @@ impl<'a> StepPictures<'a> {
         let [x, y] = [0, 1].map(|axis| 0.5 * (room[axis] - scale * (from[axis] + to[axis])));
         let place = |at: [f64; 2]| [low[0] + x + scale * at[0], low[1] + TEXT + y + scale * at[1]];
         let flat = vec![[0.0; 3]; self.sheet.panels.len()];
-        let put_in = &self.mounting.fasteners[..step];
-        let state = put_in.last().map_or(&flat, |fastener| &fastener.sheet);
-        let text = match put_in.last() {
-            None => "Cut the sheet. Move every panel back and forth once, so that no panel sticks to the next. Draw the crosses of the template on the board."
-                .to_owned(),
-            Some(fastener) => mounting_step(step, fastener),
+        let count = (step + 1).saturating_sub(self.before());
+        let put_in = &self.mounting.fasteners[..count];
+        let (state, text) = match (put_in.last(), &self.mounting.by_hand) {
+            (Some(fastener), _) => (&fastener.sheet, mounting_step(count, fastener)),
+            (None, Some(by_hand)) if step > 0 => {
+                let text = open_by_hand(by_hand);
+                (
+                    &self.mounting.opened,
+                    format!("{text}. The numbered holes then lie over their crosses"),
+                )
+            }
+            _ => (&flat, FIRST.to_owned()),
         };
         let boundaries = deployed_boundaries(self.sheet, state).into_iter();
         let placed = boundaries.map(|boundary| boundary.into_iter().map(place).collect());
         panels(canvas, &self.sheet.topology, placed, Style::stroke(MUTED, THIN));
         for (i, fastener) in self.mounting.fasteners.iter().enumerate() {
-            self.mark(canvas, i + 1, fastener, i < step, place);
+            self.mark(canvas, i + 1, fastener, i < count, place);
+            if step == 0 {
+                let hole = place(self.hole(fastener, state));
+                canvas.circle(hole, FASTENER, Style::stroke(INK, THICK));
+                canvas.add(
+                    Style::fill(INK).haloed(0.8),
+                    Text::line([hole[0] + ARM, hole[1] - ARM], LETTERS, &(i + 1).to_string()),
+                );
+            }
         }
         if let [.., before, last] = put_in {
             arrow(canvas, [self.hole(last, &before.sheet), last.place].map(place));

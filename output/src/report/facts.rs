@@ -5,7 +5,7 @@ mod design;
 mod load;
 mod mounting;
 
-pub(crate) use mounting::step as mounting_step;
+pub(crate) use mounting::{open_by_hand, step as mounting_step};
 
 use crate::report::{
     deployed::{DeployedDesign, FinishedRun},

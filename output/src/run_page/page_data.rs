@@ -45,7 +45,7 @@ pub fn page_data(scene: &Scene, designed: &Designed, report: &Report) -> Value {
         // The steps in which a mounted sheet is opened, as SVG.
         "mounting": report.mounting.as_ref().map(|it| steps_svg(&deployment.sheet, it)),
         "scene": scene_text(scene),
-        "history": history(&problem.objective, &designed.search.history),
+        "history": history(&problem.objective, &designed.history()),
         // What moves the sheet, and the units of displacement and load.
         "stroke": reached.map(|reached| (&reached.stroke_of, reached.units)),
         // Displacement and load at the maximum of the load, if a displacement is prescribed.

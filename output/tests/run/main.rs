@@ -12,10 +12,11 @@ mod results;
 mod run_page;
 mod sections;
 
+use analysis::refinement::inverse_design;
 use design::optimise::outer_loop::SearchState;
 use output::report::{Report, Warning};
 use output::run_results::write_results;
-use scene::design_run::{Designed, inverse_design};
+use scene::design_run::Designed;
 use scene::{Level, Scene, SceneConfig};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};

@@ -77,8 +77,7 @@ pub(super) struct Subpath {
     pub closed: bool,
 }
 
-/// The parts of a path, before its transform, from the origin of the moved drawing. A move that
-/// draws nothing is none.
+/// The parts of a path, before its transform. A move that draws nothing is none.
 pub(super) fn subpaths(path: &Path) -> Vec<Subpath> {
     let mut parts: Vec<Subpath> = Vec::new();
     for segment in path.data().segments() {

@@ -8,21 +8,17 @@ use crate::{
     ui::interrupt,
 };
 use anyhow::{Context, Result, ensure};
-use app::{
-    design::write_refined,
-    progress::{announce, duration},
-};
-use output::report::Report;
+use app::progress::{announce, duration};
 use scene::{
     Level, Scene, SceneConfig,
-    design_run::OnStep,
+    design_run::{Designed, OnStep},
     run_inputs::{SCENE_FILE, holds_a_run},
 };
 use verification::{ElementWindows, final_design, most_cpu_seconds, verification_tier};
 
 impl DesignCommand {
     /// A search that goes on with the hinges solved by finite elements.
-    pub(super) fn search_by_elements(&self, scene: &Scene, progress: OnStep) -> Result<Report> {
+    pub(super) fn search_by_elements(&self, scene: &Scene, progress: OnStep) -> Result<Designed> {
         refuse_run_of_another_level(scene)?;
         let weights = scene.weights();
         let tier = verification_tier(None, weights.context(
@@ -40,7 +36,7 @@ impl DesignCommand {
         ));
         let (windows, stop) = (ElementWindows { tier, service }, interrupt::stop_flag()?);
         let found = final_design(scene, &windows, stop, progress);
-        write_refined(&found.map_err(task_error)?, self.force)
+        Ok(found.map_err(task_error)?)
     }
 }
 

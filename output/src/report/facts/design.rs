@@ -5,14 +5,15 @@ use crate::{
     cut_file::Machines,
     report::{
         deployed::{DeployedDesign, FinishedRun, extent},
-        estimate::Estimate,
+        force_spreads::force_spreads,
         numbers::rounded,
     },
 };
 use analysis::{design_checks::WholeSheet, levels::Levels, unit::Unit};
 use design::{pattern::grid::Grid, sheet::kinematics::deployed_boundaries};
 use scene::{CoarseSearch, Level, LevelDifference};
-use support::severity::Severity;
+use serde_json::json;
+use support::{severity::Severity, statistics::root_mean_square};
 use surrogate::TestErrors;
 
 pub(super) fn material_and_size(of: &DeployedDesign, run: &FinishedRun) -> Vec<Fact> {
@@ -26,7 +27,7 @@ pub(super) fn material_and_size(of: &DeployedDesign, run: &FinishedRun) -> Vec<F
     let material = &scene.material;
     let thickness = rounded(material.thickness, 4);
     let (panels, Grid { m, n }) = (sheet.topology.panel_count(), sheet.topology.grid);
-    let arranged = if sheet.topology.is_full() { "" } else { ", some cells of" };
+    let arranged = if sheet.topology.is_full() { ", " } else { ", some cells of " };
     let level = scene.config.level;
     let deployed = extent(opened.into_iter().flatten());
     let remark = ": common area over the area of both, gaps between opened panels closed";
@@ -34,7 +35,7 @@ pub(super) fn material_and_size(of: &DeployedDesign, run: &FinishedRun) -> Vec<F
         number("target seen", 100.0 * run.seen, 3, Unit::Percent, remark),
         fact("material", &material.name, format!("{}, {thickness} mm thick", material.name)),
         number("mass", of.mass_kg(), 4, Unit::Kilogram, ", uncut"),
-        fact("panels", panels, format!("{panels}{arranged} {m} x {n}")),
+        fact("panels", panels, format!("{panels}{arranged}{m} x {n}")),
         size("flat size", of.flat_size(), ""),
         size("deployed size", deployed, ", panels in the plane"),
         fact("level", level, format!("{level}, {}", level.hinges())),
@@ -52,13 +53,15 @@ pub(super) fn services(of: &DeployedDesign, _: &FinishedRun) -> Vec<Fact> {
         [accept, refuse].map(|services| services.into_iter().map(|service| service.name).collect())
     };
     let said = match (&accepting[..], &refusing[..]) {
-        ([], _) => {
-            "none accepts it; `kirigami init --for SERVICE` makes a sheet for one".to_owned()
-        }
-        (_, []) => format!("accepted by {}", accepting.join(", ")),
-        _ => format!("accepted by {}; refused by {}", accepting.join(", "), refusing.join(", ")),
+        ([], _) => "none whose published limits it keeps; `kirigami init --for SERVICE` makes a sheet for one".to_owned(),
+        (_, []) => format!("it keeps the limits that {} publish", accepting.join(", ")),
+        _ => format!(
+            "it keeps the limits that {} publish (some publish their kerf alone), and breaks a limit of {}",
+            accepting.join(", "),
+            refusing.join(", ")
+        ),
     };
-    vec![fact("services", accepting, format!("{said}, by the limits that they publish"))]
+    vec![fact("services", accepting, said)]
 }
 
 /// BLAKE3 hashes: the keys of the scene without title and run folder, the law of the material, the
@@ -124,30 +127,30 @@ fn listed(percents: &[f64]) -> String {
 pub(super) fn levels_and_findings(of: &DeployedDesign, run: &FinishedRun) -> Vec<Fact> {
     let searches = &run.designed.coarse_searches;
     let mut facts: Vec<Fact> = searches.iter().map(coarse_search).collect();
-    if searches.last().is_some_and(|last| !last.suffices()) {
+    let exceeds = |last: &&CoarseSearch| last.tolerance.is_some_and(|mm| !last.is_within(mm));
+    if let Some(last) = searches.last().filter(exceeds) {
         let level = of.scene.config.level;
-        facts.push(text(COARSE_SEARCH, match run.designed.search.last().step {
+        facts.push(text(COARSE_SEARCH, match last.suffices() {
             _ if level == Level::Final => {
                 "not converged: all rounds of finite elements were made".into()
             }
-            0 => "that is less than the mesh of the windows is known to: see its row of the error budget".into(),
-            _ => format!(
+            true => "that is less than the mesh of the windows is known to: see its row of the error budget".into(),
+            false => format!(
                 "searched on at `{level}`, and no level is finer: `kirigami verify --equilibrium` compares with finite elements"
             ),
         }));
     }
-    let estimate = Estimate::new(of.scene.networks(), of.deployment);
-    facts.extend(estimate.map(|estimate| {
-        let percent = |x: f64| format!("{:.1} %", 100.0 * x);
+    let networks = of.scene.networks();
+    let spreads = force_spreads(networks, of.deployment).into_iter().flatten().flatten();
+    let inside: Vec<f64> = spreads.filter(|spread| !spread.is_nan()).collect();
+    if !inside.is_empty() {
+        let (networks, forces) = (networks.len(), root_mean_square(inside));
         let said = format!(
-            "{} networks; standard deviation inside the domain: energy {}, forces {}, D_peak {}",
-            estimate.networks,
-            percent(estimate.energy),
-            percent(estimate.forces),
-            estimate.damage_peak.map_or("-".into(), percent)
+            "{networks} networks, whose forces differ by {:.1} % inside the domain (standard deviation)",
+            100.0 * forces
         );
-        fact("ensemble", estimate, said)
-    }));
+        facts.push(fact("ensemble", json!({ "networks": networks, "forces": forces }), said));
+    }
     facts.extend(run.checks.levels.as_ref().map(levels));
     facts.extend(run.checks.whole_sheet.as_ref().map(whole_sheet));
     let counts = [Severity::Error, Severity::Warning, Severity::Note]
@@ -172,13 +175,16 @@ fn coarse_search(search: &CoarseSearch) -> Fact {
     text(
         COARSE_SEARCH,
         format!(
-            "searched at the level `{}` in {} steps: its corners differ from {reference} by {} mm at most{}{}; tolerance: {} mm",
+            "searched at the level `{}` in {} steps: its corners differ from {reference} by {} mm at most{}{}{}",
             search.level,
-            search.steps,
+            search.steps(),
             rounded(corners[1], 2),
             load.unwrap_or_default(),
             peak.unwrap_or_default(),
-            rounded(search.tolerance, 3)
+            match search.tolerance {
+                Some(tolerance) => format!("; tolerance: {} mm", rounded(tolerance, 3)),
+                None => format!("; the search went on at `{}`", search.finer),
+            }
         ),
     )
 }

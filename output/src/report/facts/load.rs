@@ -114,7 +114,7 @@ pub(super) fn springback_and_creep(of: &DeployedDesign, run: &FinishedRun) -> Ve
         facts.push(springback(None, unknown.into()));
         return facts;
     };
-    match unload(scene, problem, law, of.deployment) {
+    match unload(scene, problem, of.deployment) {
         Err(error) => facts.push(springback(None, format!("not known: {error}"))),
         Ok(shape) => {
             facts.push(springback(Some(&shape), residual_opening(&shape, law.errors.as_ref())));

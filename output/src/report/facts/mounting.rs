@@ -7,7 +7,7 @@ use crate::report::{
     numbers::rounded,
 };
 use analysis::{
-    mounting::Fastener,
+    mounting::{ByHand, Fastener},
     what_if::{ChangedSheet, WhatIf},
 };
 
@@ -18,25 +18,36 @@ pub(super) fn mounting(of: &DeployedDesign, run: &FinishedRun) -> Vec<Fact> {
     let board = format!("at least {width:.0} x {height:.0} mm, with {} fasteners", mounting.count);
     let steps = mounting.fasteners.iter().enumerate();
     let steps = steps.map(|(i, fastener)| fact("mounting", fastener, step(i + 1, fastener)));
-    [fact("board", [width, height], board)].into_iter().chain(steps).collect()
+    let by_hand = mounting.by_hand.map(|it| fact("mounting", it, open_by_hand(&it)));
+    [fact("board", [width, height], board)].into_iter().chain(by_hand).chain(steps).collect()
 }
 
-/// What the hand does.
+/// What both hands do first.
+pub(crate) fn open_by_hand(of: &ByHand) -> String {
+    let [opened, stays] = [of.opened, of.stays].map(f64::to_degrees);
+    format!(
+        "First open the sheet evenly, all round, until its hinges have turned by {opened:.0} deg, and let it go: about {stays:.0} deg stay. A hinge takes \
+         up to {} N mm",
+        rounded(of.moment, 2)
+    )
+}
+
+/// What the hand does for a fastener.
 pub(crate) fn step(number: usize, of: &Fastener) -> String {
     let panel = of.panel;
     if number == 1 {
         return format!("1: fasten panel P{panel} at place 1, free to turn");
     }
-    let outside = match of.outside {
-        1 => "1 hinge leaves".to_owned(),
-        count => format!("{count} hinges leave"),
-    };
-    let damage = match of.damage {
-        _ if of.outside > 0 => {
-            format!("; {outside} the training domain on the way: move the panels next to it along")
+    let damage = match (of.outside, of.damage) {
+        (1.., _) => format!(
+            "; the weights do not know the way of {} of the ligaments: move the panels next to it along",
+            of.outside
+        ),
+        (0, Some(1.0..)) => "; a ligament tears on the way".to_owned(),
+        (0, Some(damage)) => {
+            format!("; a ligament reaches {:.2} of its tear", (100.0 * damage).floor() / 100.0)
         }
-        Some(damage) => format!("; largest damage on the way {}", rounded(damage, 2)),
-        None => String::new(),
+        (0, None) => String::new(),
     };
     format!(
         "{number}: pull panel P{panel} by {} mm to place {number}, with {} N at most; its fastener holds {} N in the end{damage}",

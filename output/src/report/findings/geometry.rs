@@ -17,7 +17,7 @@ use design::{
         validity::{OVERLAP, overlap},
     },
 };
-use scene::placement::{NOT_SEEN, RECOGNISED};
+use scene::placement::{NOT_SEEN, RECOGNISED, seen};
 use support::severity::Severity::{Error, Note, Warning};
 
 /// Mean opening of the hinges (rad) that is rounding.
@@ -37,10 +37,10 @@ pub(super) const RULES: [Rule; 8] = [
         ],
         |of| {
             // Sheets of an even pattern are made to be recognised; others are compared by their outline.
-            let seen = of.run?.seen;
-            let is_even = of.scene.config.cells.is_some();
+            of.scene.config.cells.as_ref()?;
+            let seen = of.run.map_or_else(|| seen(of.scene, of.deployment), |run| run.seen);
             let grave = if seen < NOT_SEEN { Error } else { Warning };
-            (is_even && seen < RECOGNISED).then(|| {
+            (seen < RECOGNISED).then(|| {
                 let seen = rounded(100.0 * seen, 3);
                 found(format!("{seen} % of the target is seen: a viewer would not recognise it"))
                     .with(grave)
