@@ -1,10 +1,10 @@
-//! How a sheet is mounted on a board: opened evenly by hand and let go, then fastened in the order of
+//! How a sheet is mounted on a board: opened evenly by hand and released, then fastened in the order of
 //! the supports of its scene.
 //!
-//! An opened sheet springs back, and its hinges are elastic about what stays. So the way of a hole to
-//! its place is short, and no ligament is far from its state in the opened sheet.
+//! An opened sheet springs back, and its hinges are elastic about the residual opening. So the way of a
+//! hole to its place is short, and no ligament is far from its state in the opened sheet.
 
-use crate::springback::LetGo;
+use crate::springback::ReleasedSheet;
 use design::equilibrium::load_step::{LoadStep, Status};
 use design::geometry::polygon::bounds;
 use design::hinge_law::{DamageMeasure, Order, PreparedLaw, ReleasedLaw};
@@ -17,6 +17,7 @@ use hinge::SheetMaterial;
 use scene::placement::placed;
 use scene::{Posture, Scene};
 use serde::Serialize;
+use std::collections::BTreeSet;
 
 /// Border of a board around the opened sheet, and the length to which its size is rounded (mm).
 const BORDER: f64 = 20.0;
@@ -25,7 +26,7 @@ const ROUND: f64 = 10.0;
 /// yields.
 const SAFETY: f64 = 2.0;
 
-/// What stays of an opening, over it, up to which a sheet that is let go is flat again.
+/// Residual opening over the opening up to which a released sheet is flat again.
 const FLAT: f64 = 0.01;
 
 /// The fasteners of a mounted sheet in the order in which they are put in.
@@ -44,7 +45,7 @@ pub struct Mounting {
     pub by_hand: Option<ByHand>,
 }
 
-/// The sheet is opened evenly and let go.
+/// The sheet is opened evenly and released.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct ByHand {
     /// Mean rotation of the hinges in the opened sheet (rad).
@@ -64,8 +65,8 @@ pub struct Fastener {
     pub hole: Option<f64>,
     /// Its place on the board, where the opened sheet is (mm).
     pub place: [f64; 2],
-    /// The way of its hole to that place when it is put in (mm).
-    pub way: [f64; 2],
+    /// Length of the way of its hole to that place when it is put in (mm).
+    pub way: f64,
     /// Largest force of the hand on that way (N).
     pub pull: f64,
     /// Force that it holds in the end (N).
@@ -85,13 +86,6 @@ pub fn borne_by_hole(material: &SheetMaterial, diameter: f64) -> f64 {
     material.plastic[0][0] * material.thickness * diameter / SAFETY
 }
 
-impl Fastener {
-    /// Length of the way of its hole (mm).
-    pub fn way_length(&self) -> f64 {
-        self.way[0].hypot(self.way[1])
-    }
-}
-
 impl Mounting {
     /// The mounting of a deployed sheet of a scene; `None` unless the scene says that it is mounted
     /// and only fasteners open it.
@@ -109,8 +103,8 @@ impl Mounting {
         let reactions = mechanics.solver.reactions(hinged, end);
         let attachments = mechanics.solver.attachment_points();
         let on_board = placed(scene, sheet, end);
-        let let_go = LetGo::new(scene, mechanics, deployment).ok()?;
-        let (released, rest) = (ReleasedLaw(&let_go.hinges), &let_go.end().configuration);
+        let free = ReleasedSheet::new(scene, mechanics, deployment).ok()?;
+        let (released, rest) = (ReleasedLaw(&free.hinges), &free.end().configuration);
         let released = mechanics.hinged(sheet, &released, false);
         let steps = mechanics.solver.mounted(released, rest).ok()?;
         let count = mechanics.solver.fastened().len();
@@ -121,6 +115,7 @@ impl Mounting {
         let fasteners = steps.into_iter().map(|step| {
             let panel = step.panel;
             let [x, y, _] = reactions[panel];
+            let (outside, damage) = on_the_way(&*law, &step.path);
             let place =
                 deployed(&sheet.panels[panel], on_board[panel], sheet.panels[panel].reference);
             Fastener {
@@ -130,8 +125,8 @@ impl Mounting {
                 way: step.way,
                 pull: step.force,
                 holds: x.hypot(y),
-                damage: damage(&*law, &step.path),
-                outside: outside(&*law, &step.path),
+                damage,
+                outside,
                 sheet: step.end,
             }
         });
@@ -167,24 +162,16 @@ fn mean_rotation(sheet: &Sheet, state: &[Motion]) -> f64 {
     turned.sum::<f64>() / sheet.hinges.len() as f64
 }
 
-/// Largest peak damage on a way.
-fn damage(law: &dyn PreparedLaw, path: &[LoadStep]) -> Option<f64> {
-    let of_step = |step: &LoadStep| {
-        let damage = law.damage(&step.deformations, false);
-        let states = std::iter::zip(damage, law.inside(&step.deformations));
-        let known = states.map(|(damage, inside)| {
-            DamageMeasure::Peak.known(&damage).or(Some(damage.d)).filter(|_| inside)
-        });
-        let known: Vec<Option<f64>> = known.collect();
-        (!known.is_empty()).then_some(())?;
-        known.into_iter().try_fold(0.0, |most: f64, damage| Some(most.max(damage?)))
-    };
-    path.iter().try_fold(0.0, |most: f64, step| Some(most.max(of_step(step)?)))
-}
-
-/// Number of hinges outside the training domain on a way.
-fn outside(law: &dyn PreparedLaw, path: &[LoadStep]) -> usize {
-    let inside: Vec<Vec<bool>> = path.iter().map(|step| law.inside(&step.deformations)).collect();
-    let hinges = inside.first().map_or(0, Vec::len);
-    (0..hinges).filter(|hinge| inside.iter().any(|step| !step[*hinge])).count()
+/// Number of hinges outside the training domain on a way, and if there are none the largest peak
+/// damage there; `None` for a law that predicts none.
+fn on_the_way(law: &dyn PreparedLaw, path: &[LoadStep]) -> (usize, Option<f64>) {
+    let (mut outside, mut most) = (BTreeSet::new(), Some(0.0));
+    for LoadStep { deformations, .. } in path {
+        let inside = law.inside(deformations).into_iter().enumerate();
+        outside.extend(inside.filter(|(_, inside)| !inside).map(|(hinge, _)| hinge));
+        let damage = law.damage(deformations, false).into_iter();
+        let peaks = damage.map(|it| DamageMeasure::Peak.known(&it).unwrap_or(it.d));
+        most = peaks.reduce(f64::max).zip(most).map(|(peak, most)| f64::max(peak, most));
+    }
+    (outside.len(), most.filter(|_| outside.is_empty()))
 }

@@ -9,7 +9,7 @@ use crate::error_budget::{ErrorBudget, ErrorCause};
 use crate::level_difference::AtLevel;
 use design::objective::design_problem::Deployment;
 use design::optimise::outer_loop::Ended;
-use scene::design_run::{BegunRun, Designed, Earlier, LEVELS, OnStep, steps_made};
+use scene::design_run::{BegunRun, Designed, Earlier, LEVELS, OnStep, left_run};
 use scene::{Level, Scene};
 use std::sync::atomic::{AtomicBool, Ordering};
 use support::{Fault, at, refuse};
@@ -26,13 +26,13 @@ pub fn inverse_design(
     progress: OnStep,
 ) -> Result<Designed, Fault> {
     let own = scene.config.level;
-    let coarse = scene.learned_levels().into_iter().find(|coarse| coarse < &own);
-    let is_learned = matches!(own, Level::Standard | Level::Fine);
+    let coarser = |level: &Level| *level < own && own < Level::Final;
+    let coarse = scene.learned_levels().into_iter().find(coarser);
     let searches = scene.config.optimiser.steps > 0 && !stop.load(Ordering::Relaxed);
+    let is_new = left_run(scene)?
+        .is_none_or(|(ended, search)| ended == Ended::Stopped && search.last().step == 0);
     match coarse {
-        Some(coarse) if is_learned && searches && steps_made(scene)? == 0 => {
-            search(scene, &[coarse, own], None, stop, progress)
-        }
+        Some(coarse) if searches && is_new => search(scene, &[coarse, own], None, stop, progress),
         _ => search(scene, &[own], None, stop, progress),
     }
 }

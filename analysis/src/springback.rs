@@ -75,27 +75,27 @@ fn unloaded(
 ) -> Result<ResidualShape, DesignError> {
     let mechanics = problem.model.equilibrium().map_err(DesignError::from)?;
     let loaded = deployment.at_full_load()?;
-    let let_go = LetGo::new(scene, mechanics, deployment)?;
-    let free = converged(let_go.end())?;
+    let released_sheet = ReleasedSheet::new(scene, mechanics, deployment)?;
+    let free = converged(released_sheet.end())?;
     let moved = corner_distances(&deployment.sheet, &loaded.configuration, &free.configuration);
     let rotations = zip(&loaded.deformations, &free.deformations);
     Ok(ResidualShape {
         rotations: rotations.map(|(on, off)| [on.theta, off.theta]).collect(),
         corners: rms_and_maximum(moved),
-        snaps: let_go.path.iter().any(|step| step.jumps > 0),
+        snaps: released_sheet.path.iter().any(|step| step.jumps > 0),
     })
 }
 
-/// A sheet that was opened and let go.
-pub(crate) struct LetGo {
+/// A sheet that was opened and released.
+pub(crate) struct ReleasedSheet {
     /// Its hinges.
     pub hinges: Vec<ReleasedHinge>,
     /// Its path while the loads are taken off.
     path: Vec<LoadStep>,
 }
 
-impl LetGo {
-    /// A deployed sheet that is let go, by the law of released hinges of its scene; without one its
+impl ReleasedSheet {
+    /// A deployed sheet that is released, by the law of released hinges of its scene; without one its
     /// hinges are as stiff on the way back as flat ones.
     pub(crate) fn new(
         scene: &Scene,

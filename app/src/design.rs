@@ -40,16 +40,6 @@ pub fn hold(scene: &Scene, restart: bool) -> Result<File> {
     Ok(held)
 }
 
-/// Writes the results of a design that was found on several levels.
-pub fn write_refined(designed: &Designed, force: bool) -> Result<Report> {
-    let scene = &designed.scene;
-    if designed.ended == Ended::Stopped {
-        let made = designed.search.last().step;
-        bail!(Unfinished { left: scene.config.optimiser.steps - made, what: "design steps" });
-    }
-    write_run(scene, designed, force)
-}
-
 /// An error if a run would replace files of its folder that no run has written.
 fn refuse_files_of_others(folder: &Path) -> Result<()> {
     if holds_a_run(folder) {
@@ -68,8 +58,14 @@ fn refuse_files_of_others(folder: &Path) -> Result<()> {
     Ok(())
 }
 
-/// Writes the results of a run to its folder, with pictures and animation.
+/// Writes the results of a run to the folder of its scene, with pictures and animation; `force` also
+/// writes cut files of a design with errors. An error if the run was stopped at a coarser level.
 pub fn write_run(scene: &Scene, designed: &Designed, force: bool) -> Result<Report> {
+    if designed.scene.output() != scene.output() {
+        bail!(unfinished(scene, designed.search.last().step));
+    }
+    // At a finer level than the scene's if an accuracy was asked for.
+    let scene = &designed.scene;
     let animated = || {
         let frames = deployment_frames(scene, designed, MOST_FRAMES);
         animation::save(&frames, &scene.output().join(ANIMATION), FRAME_WIDTH)
@@ -87,7 +83,7 @@ pub fn write_run(scene: &Scene, designed: &Designed, force: bool) -> Result<Repo
 pub fn ended(scene: &Scene, report: &Report) -> Result<()> {
     match &report.ended {
         Ended::Completed | Ended::Settled => {}
-        Ended::Stopped => bail!(unfinished(scene, report.coarse_searches.len(), report.steps)),
+        Ended::Stopped => bail!(unfinished(scene, report.steps)),
         Ended::Stuck { reason } => bail!("the search is stuck: {reason}"),
     }
     let errors: Vec<String> = report.errors().map(Warning::to_string).collect();
@@ -99,10 +95,10 @@ pub fn ended(scene: &Scene, report: &Report) -> Result<()> {
     Ok(())
 }
 
-/// A stopped run after `coarse` searches at coarser levels, with `made` steps in all.
-fn unfinished(scene: &Scene, coarse: usize, made: usize) -> Unfinished {
-    let all = (coarse + 1) * scene.config.optimiser.steps;
-    Unfinished { left: all.saturating_sub(made), what: "design steps" }
+/// A run that was stopped after `made` steps at its level.
+fn unfinished(scene: &Scene, made: usize) -> Unfinished {
+    let left = scene.config.optimiser.steps.saturating_sub(made);
+    Unfinished { left, what: "design steps" }
 }
 
 /// Writes the PNG of every picture in the run folder that has an SVG.

@@ -51,7 +51,7 @@ pub struct Report {
     pub ended: Ended,
     /// The searches at coarser levels before, if there were any.
     pub coarse_searches: Vec<CoarseSearch>,
-    /// Number of steps after the start, of all searches.
+    /// Number of steps after the start, without the searches at coarser levels.
     pub steps: usize,
     /// The terms of the scores in words, with their units.
     #[serde(skip)]
@@ -182,7 +182,7 @@ impl Report {
             title: scene.config.title.clone(),
             ended: designed.ended.clone(),
             coarse_searches: coarse_searches.clone(),
-            steps: designed.steps(),
+            steps: designed.search.last().step,
             terms: problem.objective.labels(),
             before: Scores::new(&problem.objective, &designed.start),
             after: run.after,

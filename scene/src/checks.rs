@@ -14,7 +14,7 @@ use crate::{
 };
 use design::{
     geometry::{
-        polygon::{bounds, distance, distance_to_outline, mean, size},
+        polygon::{bounds, distance, distance_to_outline, edges, mean, size},
         region::Region,
     },
     pattern::cut_pattern::CutPattern,
@@ -83,10 +83,10 @@ pub(super) fn no_section(name: &str) -> Fault {
     format!("the level of the scene needs the section [{name}]").into()
 }
 
-/// Maximum ratio of the longer side of the target to that of the flat sheet. Panels keep their edges: a
-/// sheet of squares opens to twice its width; a sheet of slender panels opens further, but along
-/// one axis only.
-const OPENS_TO: f64 = 6.0;
+/// Maximum ratio of the perimeters of the box around the target and of the flat sheet. Panels keep
+/// their edges: a sheet of squares opens to twice its width; a sheet of slender panels opens
+/// further, but along one axis only.
+const OPENS_TO: f64 = 4.0;
 
 /// Maximum distance between the middles of target and flat sheet (mm): supports move a sheet by 100
 /// m at most.
@@ -99,14 +99,13 @@ const NO_AREA: f64 = 1e-6;
 /// wrong unit.
 pub(super) fn target(target: &Target, scene: &SceneConfig) -> Result<(), Fault> {
     let outline = scene.sheet.outline();
-    let side = |points: &[[f64; 2]]| {
-        let [width, height] = size(bounds(points.iter().copied()));
-        width.max(height)
-    };
-    let (of_target, of_sheet) = (side(&target.points), side(&outline.corners));
-    let limits = [0.2 * of_sheet, OPENS_TO * of_sheet];
-    within("longer side of the target", of_target, limits, "mm")
-        .map_err(|error| format!("{error} (the flat sheet is {of_sheet:.0} mm long)"))?;
+    let perimeter: f64 = edges(&outline.corners).map(|(p, q)| distance(p, q)).sum();
+    let [width, height] = size(bounds(target.points.iter().copied()));
+    let around = 2.0 * (width + height);
+    let limits = [0.2 * perimeter, OPENS_TO * perimeter];
+    within("perimeter of the box around the target", around, limits, "mm").map_err(|error| {
+        format!("{error} (the outline of the flat sheet is {perimeter:.0} mm long)")
+    })?;
     let away = distance(target.mean(), mean(&outline.corners));
     within("distance of the target from the sheet", away, [0.0, AWAY], "mm")?;
     let objective = &scene.objective;

@@ -117,17 +117,12 @@ pub fn design_of_run(scene: &Scene) -> Result<Option<DesignVector>, Fault> {
     Ok(state.map(|state| state.search.best))
 }
 
-/// How the run in the scene's run folder was left, and its best design; `None` if there is no run.
+/// How the run in the scene's run folder was left, and its search; `None` if there is no run.
 ///
 /// It is an error if the run is of another scene or model.
-pub fn left_run(scene: &Scene) -> Result<Option<(Ended, DesignVector)>, Fault> {
+pub fn left_run(scene: &Scene) -> Result<Option<(Ended, SearchState)>, Fault> {
     let state = RunState::read(scene)?;
-    Ok(state.map(|state| (state.left(), state.search.best)))
-}
-
-/// Number of steps of the run in the scene's run folder, without the searches at coarser levels.
-pub fn steps_made(scene: &Scene) -> Result<usize, Fault> {
-    Ok(RunState::read(scene)?.map_or(0, |state| state.search.last().step))
+    Ok(state.map(|state| (state.left(), state.search)))
 }
 
 /// The keys of a scene by which a design is found. They change neither its sheet nor how it
@@ -157,12 +152,6 @@ pub struct BegunRun {
 }
 
 impl Designed {
-    /// Number of steps of all its searches.
-    pub fn steps(&self) -> usize {
-        let coarse = self.coarse_searches.iter().map(CoarseSearch::steps);
-        coarse.sum::<usize>() + self.search.last().step
-    }
-
     /// The records of all its searches. The start of each but the first is the end of the search
     /// before, at another level.
     pub fn history(&self) -> Vec<StepRecord> {
@@ -237,6 +226,8 @@ impl BegunRun {
             .filter(|state| earlier.last.is_none() || state.search.last().step > 0);
         // More steps than before are all made.
         let more = begun.as_ref().is_some_and(|state| steps > state.scene.optimiser.steps);
+        let complete =
+            begun.as_ref().is_some_and(|state| !more && state.ended == Some(Ended::Completed));
         let (searches, mut search) = match (begun, &earlier.last) {
             (Some(state), _) => (state.coarse_searches, state.search),
             (None, last) => {
@@ -252,6 +243,7 @@ impl BegunRun {
             }
         };
         let converged = !searches.is_empty() && !more;
+        let steps = if complete { search.last().step } else { steps };
         let until = until.unwrap_or(Until { steps, converged });
         let inputs = run_inputs::keep(scene)?;
         let save = |search: &SearchState, ended: Option<&Ended>| {

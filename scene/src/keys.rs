@@ -95,7 +95,7 @@ pub struct SceneConfig {
     /// Settings of the equilibrium solver: of code, not keys.
     #[serde(skip)]
     pub solver: SolverSettings,
-    /// The target outline; its longer side must be 0.2 to 6 times as long as the flat sheet's.
+    /// The target outline; the box around it must have 0.2 to 4 times the perimeter of the flat sheet.
     pub target: TargetShape,
     /// The objective (16) and its weights.
     #[serde(default)]

@@ -145,9 +145,9 @@ impl Project {
         };
         let run = sheet.changed(config).ok()?;
         // A run that cannot be read, or has other keys, does not belong to the sheet.
-        let (ended, best) = left_run(&run).ok()??;
+        let (ended, search) = left_run(&run).ok()??;
         let of_sheet = SceneConfig { output, ..sheet.config.clone() };
-        (run.starting_at(&best) == of_sheet).then_some((run, ended))
+        (run.starting_at(&search.best) == of_sheet).then_some((run, ended))
     }
 }
 

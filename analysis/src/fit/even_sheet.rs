@@ -374,7 +374,9 @@ mod tests {
     /// What one sees of panels, by points of a raster instead of polygons.
     fn seen_in_points(panels: Vec<Contour>, drawing: &Region) -> f64 {
         const REACH: i32 = 10;
-        let step = 0.04 * drawing.longer_side() / f64::from(REACH);
+        let mean = panels.iter().map(|panel| area(panel)).sum::<f64>() / panels.len() as f64;
+        let gap = f64::max(0.04 * drawing.longer_side(), 0.6 * mean.sqrt());
+        let step = gap / f64::from(REACH);
         let [low, _] = drawing.bounds();
         let at = |[i, j]: [i32; 2]| [low[0] + step * f64::from(i), low[1] + step * f64::from(j)];
         let all = (-REACH..=REACH).flat_map(|x| (-REACH..=REACH).map(move |y| [x, y]));

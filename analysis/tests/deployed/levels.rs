@@ -1,6 +1,7 @@
 //! The levels of a scene: what each takes from it, their derivatives, and the difference to a finer
 //! one.
 
+use crate::changed;
 use analysis::level_difference::{AtLevel, deployed};
 use analysis::refinement::inverse_design;
 use design::hinge_law::{MeanLaw, Order};
@@ -88,10 +89,10 @@ fn a_level_goes_on_with_the_optimiser_of_the_one_before() {
 fn a_design_begins_at_the_cheapest_level_and_is_the_same_after_a_stop() {
     let folder = tempfile::tempdir().unwrap();
     let designed = |name: &str, stop_at: usize| {
-        let mut config = scene("a4-plate.toml").config;
-        config.output = folder.path().join(name);
-        config.optimiser.steps = 12;
-        let plate = scene("a4-plate.toml").changed(config).unwrap();
+        let plate = changed("a4-plate.toml", |config| {
+            config.output = folder.path().join(name);
+            config.optimiser.steps = 12;
+        });
         let (stop, mut levels) = (AtomicBool::new(false), Vec::new());
         let designed = inverse_design(&plate, &stop, &mut |level, search| {
             levels.push(level);
@@ -106,11 +107,10 @@ fn a_design_begins_at_the_cheapest_level_and_is_the_same_after_a_stop() {
     assert_eq!(whole.coarse_searches[0].steps(), 12);
     assert!(whole.best.loss < whole.start.loss);
     let (stopped, _) = designed("stopped", 5);
-    assert_eq!((stopped.steps(), stopped.ended), (5, Ended::Stopped));
+    assert_eq!((stopped.coarse_searches[0].steps(), stopped.ended), (5, Ended::Stopped));
     let (continued, levels) = designed("stopped", usize::MAX);
     assert_eq!(levels, [Level::Draft, Level::Standard]);
     assert_eq!(continued.search.best, whole.search.best);
-    assert_eq!(continued.steps(), whole.steps());
 }
 
 #[test]

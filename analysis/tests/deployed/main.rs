@@ -1,7 +1,8 @@
-//! Shipped scenes deployed: their error budget and their levels.
+//! Shipped scenes deployed: their error budget, their levels, and how they are mounted.
 
 mod error_budget;
 mod levels;
+mod mounting;
 
 use scene::{Scene, SceneConfig};
 use std::path::{Path, PathBuf};

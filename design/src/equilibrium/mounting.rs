@@ -25,8 +25,8 @@ const STEPS: usize = 4;
 pub struct MountingStep {
     /// Index of its panel.
     pub panel: usize,
-    /// The way of its hole to its place (mm); zero for the first one.
-    pub way: [f64; 2],
+    /// Length of the way of its hole to its place (mm); zero for the first one.
+    pub way: f64,
     /// Largest force of the hand on the way (N).
     pub force: f64,
     /// The equilibria on the way; none for the first one. It ends early if no equilibrium is
@@ -65,7 +65,7 @@ impl EquilibriumSolver {
         let flat = self.laid(sheet, resting, [first, second]);
         let mut steps = vec![MountingStep {
             panel: first,
-            way: [0.0; 2],
+            way: 0.0,
             force: 0.0,
             path: Vec::new(),
             end: flat.clone(),
@@ -131,7 +131,7 @@ impl EquilibriumSolver {
         };
         Ok(MountingStep {
             panel,
-            way: [x, y],
+            way: x.hypot(y),
             force: path.iter().map(force).fold(0.0, f64::max),
             end: path.last().map_or(start, |last| last.configuration.clone()),
             path,
@@ -201,7 +201,7 @@ mod tests {
             }
         }
         // The work of a hand that begins without a force is at most its largest force times way.
-        assert!(steps[1].force > 0.0 && steps[1].way[0].hypot(steps[1].way[1]) > 10.0);
+        assert!(steps[1].force > 0.0 && steps[1].way > 10.0);
         let at_once = solver.path(hinged).pop().unwrap().configuration;
         let last = &steps[2].end;
         for (one, other) in std::iter::zip(at_once.as_flattened(), last.as_flattened()) {

@@ -1,20 +1,22 @@
 //! Numbers of panels and hinges, clear of all cuts.
 //!
-//! A panel is convex and no slit enters it: a text inside of it is clear of all slits. A hinge's
-//! number is inside one of its two panels, as near to its hole as the cuts allow.
+//! No slit enters a panel: a text inside of it is clear of all slits. A hinge's number is inside one
+//! of its two panels, as near to its hole as the cuts allow.
 
 use crate::{
     cut_file::cut_lines::CutLines,
     display::{Text, rectangle},
 };
 use design::{
-    geometry::polygon::{distance, edges, side},
+    geometry::polygon::{contains, distance_to_outline},
     sheet::cut_sheet::Sheet,
 };
 
 /// Height of panel numbers relative to the root of the panel's area, and its maximum (mm).
 const PANEL_HEIGHT: f64 = 0.1;
 const MAX_HEIGHT: f64 = 40.0;
+/// Places where the number of a panel is tried, from its middle, relative to that root.
+const PLACES: [f64; 5] = [0.0, 0.2, -0.2, 0.35, -0.35];
 /// Height of hinge numbers relative to the ligament width, and its minimum if there is room (mm).
 const HINGE_HEIGHT: f64 = 0.5;
 const MIN_HEIGHT: f64 = 2.5;
@@ -33,10 +35,13 @@ pub(super) fn numbers(cuts: &CutLines, sheet: &Sheet) -> (Vec<Text>, Vec<Text>) 
     let mut panels: Vec<Taken> =
         (0..sheet.panels.len()).map(|k| Taken::new(cuts, sheet, k)).collect();
     let of_panels = std::iter::zip(0.., &sheet.panels).map(|(k, panel)| {
-        let height = f64::min(PANEL_HEIGHT * panel.area.sqrt(), MAX_HEIGHT);
-        let at = |height| Text::centred(panel.centroid, height, format!("P{k}"));
-        let free = |text: &Text| panels[k].clearance(text);
-        widest(HEIGHTS.map(|scale| at(scale * height)), free)
+        let ([x, y], side) = (panel.centroid, panel.area.sqrt());
+        let height = f64::min(PANEL_HEIGHT * side, MAX_HEIGHT);
+        let places = || PLACES.iter().flat_map(|u| PLACES.map(|v| [x + side * u, y + side * v]));
+        let texts = HEIGHTS.iter().flat_map(|scale| {
+            places().map(move |at| Text::centred(at, scale * height, format!("P{k}")))
+        });
+        widest(texts, |text| panels[k].clearance(text))
     });
     let of_panels: Vec<Text> = of_panels.collect();
     for (taken, text) in std::iter::zip(&mut panels, &of_panels) {
@@ -73,10 +78,10 @@ pub(super) fn numbers(cuts: &CutLines, sheet: &Sheet) -> (Vec<Text>, Vec<Text>) 
 
 /// What a number inside a panel has to keep clear of.
 struct Taken {
-    corners: [[f64; 2]; 4],
+    boundary: Vec<[f64; 2]>,
     /// Half the width of the slits along the edges (mm).
     edge: f64,
-    /// Centre and radius of the holes at the panel's corners (mm).
+    /// Centre and radius of the holes at and in the panel (mm).
     holes: Vec<([f64; 2], f64)>,
     /// Lower left and upper right corners of the numbers in the panel (mm).
     texts: Vec<[[f64; 2]; 2]>,
@@ -88,10 +93,12 @@ impl Taken {
         let holes = hinges
             .filter(|(hinge, _)| hinge.panels().contains(&k))
             .map(|(_, hole)| (hole.centre, hole.radius));
+        let attached = cuts.attachments.iter().filter(|attached| attached.panel == k);
+        let attached = attached.filter_map(|it| Some((it.at, 0.5 * it.hole?)));
         Self {
-            corners: sheet.panels[k].corners,
+            boundary: sheet.panels[k].boundary.clone(),
             edge: 0.5 * cuts.slit_width,
-            holes: holes.collect(),
+            holes: holes.chain(attached).collect(),
             texts: Vec::new(),
         }
     }
@@ -101,8 +108,9 @@ impl Taken {
     fn clearance(&self, text: &Text) -> f64 {
         let [low, high] = text.corners();
         let box_corners = rectangle([low, high]);
-        let to_edges = edges(&self.corners).flat_map(|(p, q)| {
-            box_corners.map(|corner| side((p, q), corner) / distance(p, q) - self.edge)
+        let to_edges = box_corners.map(|corner| {
+            let off = distance_to_outline(corner, &self.boundary);
+            if contains(&self.boundary, corner) { off - self.edge } else { -off }
         });
         // Gap between two rectangles; a point is one without extent.
         let gap = |[from, to]: [[f64; 2]; 2]| {
@@ -115,7 +123,8 @@ impl Taken {
         };
         let to_holes = self.holes.iter().map(|(centre, radius)| gap([*centre; 2]) - radius);
         let to_texts = self.texts.iter().map(|corners| gap(*corners));
-        let all = to_edges.chain(to_holes).chain(to_texts);
+        let to_notches = self.boundary.iter().map(|corner| gap([*corner; 2]) - self.edge);
+        let all = to_edges.into_iter().chain(to_notches).chain(to_holes).chain(to_texts);
         all.fold(CLEAR * text.height, f64::min) / text.height
     }
 }

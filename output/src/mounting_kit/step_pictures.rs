@@ -30,7 +30,7 @@ const FASTENER: f64 = 0.9;
 const HEAD: [f64; 2] = [2.4, 0.9];
 /// What is done before.
 const FIRST: &str = "Cut the sheet. Move every panel back and forth once, so that no panel sticks to the next. Draw the crosses of the template on the \
-                     board. The numbers at holes are those of their crosses.";
+                     board. Holes have the numbers of their crosses.";
 /// Columns of a picture of all steps, and the width of a cell there (mm).
 const COLUMNS: usize = 3;
 const CELL: [f64; 2] = [80.0, 95.0];

@@ -1,7 +1,6 @@
 //! A sheet that fasteners open on a board.
 
 use super::*;
-use crate::learned::learned;
 use std::fmt::Write;
 
 /// The places of three middles when hinges open by 0.6 rad: panels of 400 mm move away from the
@@ -9,9 +8,8 @@ use std::fmt::Write;
 const FASTENERS: [([usize; 2], [f64; 2]); 3] =
     [([0, 0], [0.0, 0.0]), ([2, 2], [200.7, 200.7]), ([2, 0], [200.7, 0.0])];
 
-/// Supports with their displacements.
-fn fasteners() -> String {
-    let mut fasteners = String::new();
+fn mounted() -> Finished {
+    let mut fasteners = "[posture]\nkind = \"mounted\"\n".to_owned();
     for (panel, displacement) in FASTENERS {
         write!(
             fasteners,
@@ -19,11 +17,6 @@ fn fasteners() -> String {
         )
         .unwrap();
     }
-    fasteners
-}
-
-fn mounted() -> Finished {
-    let fasteners = format!("[posture]\nkind = \"mounted\"\n{}", fasteners());
     Finished::new(&with(&[(SUPPORT, &fasteners), (PULL, ""), QUICK]))
 }
 
@@ -104,22 +97,4 @@ fn a_mounted_sheet_is_as_strong_as_its_material_and_as_open() {
     let off = what_if("hole 1 off by 0.5 mm");
     assert!((0.1..5.0).contains(&off), "{off}");
     assert!(what_if("without the last fastener") > 0.0);
-}
-
-/// What stays of the opening of a yielding sheet leaves short ways to its fasteners.
-#[test]
-fn a_sheet_of_learned_hinges_is_opened_by_hand_and_let_go() {
-    let held = ("kind = \"held-flat\"", "kind = \"mounted\"");
-    let no_steps = ("steps = 6", "steps = 0");
-    let scene = learned(&[held, (SUPPORT, &fasteners()), (PULL, ""), no_steps]);
-    let run = Finished::new(&scene);
-    let mounting = run.report.mounting.as_ref().unwrap();
-    let by_hand = mounting.by_hand.unwrap();
-    assert!(0.0 < by_hand.stays && by_hand.stays < by_hand.opened, "{by_hand:?}");
-    assert!(mounting.is_complete() && by_hand.moment > 0.0);
-    // From the flat sheet it is 284 mm.
-    let way = mounting.fasteners[1].way_length();
-    let part = 1.0 - by_hand.stays / by_hand.opened;
-    assert!(way < 1.5 * part * 284.0, "{way} {part}");
-    assert!(run.file("mount.svg").contains("First open the sheet evenly"));
 }

@@ -36,7 +36,7 @@ impl DesignCommand {
         ));
         let (windows, stop) = (ElementWindows { tier, service }, interrupt::stop_flag()?);
         let found = final_design(scene, &windows, stop, progress);
-        Ok(found.map_err(task_error)?)
+        found.map_err(task_error)
     }
 }
 

@@ -26,7 +26,7 @@ pub(super) fn mounting(of: &DeployedDesign, run: &FinishedRun) -> Vec<Fact> {
 pub(crate) fn open_by_hand(of: &ByHand) -> String {
     let [opened, stays] = [of.opened, of.stays].map(f64::to_degrees);
     format!(
-        "First open the sheet evenly, all round, until its hinges have turned by {opened:.0} deg, and let it go: about {stays:.0} deg stay. A hinge takes \
+        "First open the sheet evenly, all round, until its hinges have turned by {opened:.0} deg, and release it: about {stays:.0} deg stay. A hinge takes \
          up to {} N mm",
         rounded(of.moment, 2)
     )
@@ -51,7 +51,7 @@ pub(crate) fn step(number: usize, of: &Fastener) -> String {
     };
     format!(
         "{number}: pull panel P{panel} by {} mm to place {number}, with {} N at most; its fastener holds {} N in the end{damage}",
-        rounded(of.way_length(), 2),
+        rounded(of.way, 2),
         rounded(of.pull, 2),
         rounded(of.holds, 2)
     )
