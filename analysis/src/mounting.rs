@@ -1,8 +1,8 @@
-//! How a sheet is mounted on a board: opened evenly by hand and released, then fastened in the order of
-//! the supports of its scene.
+//! How a sheet is mounted on a board: opened evenly by hand and released, then fastened in the order
+//! of the supports of its scene.
 //!
-//! An opened sheet springs back, and its hinges are elastic about the residual opening. So the way of a
-//! hole to its place is short, and no ligament is far from its state in the opened sheet.
+//! An opened sheet springs back, and its hinges are elastic about the residual opening. So the way
+//! of a hole to its place is short, and no ligament is far from its state in the opened sheet.
 
 use crate::springback::ReleasedSheet;
 use design::equilibrium::load_step::{LoadStep, Status};

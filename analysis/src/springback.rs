@@ -95,8 +95,8 @@ pub(crate) struct ReleasedSheet {
 }
 
 impl ReleasedSheet {
-    /// A deployed sheet that is released, by the law of released hinges of its scene; without one its
-    /// hinges are as stiff on the way back as flat ones.
+    /// A deployed sheet that is released, by the law of released hinges of its scene; without one
+    /// its hinges are as stiff on the way back as flat ones.
     pub(crate) fn new(
         scene: &Scene,
         mechanics: &Mechanics,

@@ -48,8 +48,9 @@ pub struct DesignCommand {
     #[arg(long, value_name = "FILE")]
     weights: Option<PathBuf>,
     /// Search at this level alone, instead of the scene's: how much of the hinges is modelled; see
-    /// `kirigami levels`. Without it a search at `standard` or `fine` begins at `draft`. At `final` the hinges are solved by finite elements after the search, and it goes
-    /// on with them: hours, which are stated first
+    /// `kirigami levels`. Without it a search at `standard` or `fine` begins at `draft`. At `final`
+    /// the hinges are solved by finite elements after the search, and it goes on with them: hours,
+    /// which are stated first
     #[arg(long, value_name = "LEVEL", value_parser = with_unit::level_up_to(Level::Final))]
     level: Option<Level>,
     /// How accurately the corners of the panels are to be known: a length such as 0.5mm, or a part

@@ -1,5 +1,5 @@
-//! Styles of an SVG file that move or change its elements, which usvg does not read: they are refused
-//! by their name.
+//! Styles of an SVG file that move or change its elements, which usvg does not read: they are
+//! refused by their name.
 
 use simplecss::{AttributeOperator, DeclarationTokenizer, PseudoClass, StyleSheet};
 use std::collections::HashMap;
