@@ -16,13 +16,13 @@ use crate::{
     input_file,
     new_project::{
         cut_from::CutFrom,
-        edited::{heading, scale, set},
+        edited::{heading, map, scale, set},
         template::Template,
     },
 };
 use analysis::fit::scene::SIDE;
 use anyhow::{Context, Result};
-use hinge::Regime;
+use hinge::{MIN_W_LIG, Regime};
 use scene::{CuttingConfig, Paper, drawing::drawn_outline::numbered, place_drawing, rounded};
 use std::path::Path;
 use support::relative_path;
@@ -161,7 +161,7 @@ impl FirstScene {
             cut_from.write(&mut scene["cutting"]);
         }
         for key in ["start", "range"] {
-            scale(&mut scene["ligament"][key], factor);
+            map(&mut scene["ligament"][key], |width| rounded(factor * width).max(MIN_W_LIG));
         }
         scale(&mut scene["process"]["r_win"], factor);
         name_weights(&mut scene["surrogate"], weights, named)?;
