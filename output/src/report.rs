@@ -123,7 +123,8 @@ impl Report {
 
     /// How the search ended.
     pub fn end_of_search(&self) -> String {
-        let steps = self.steps;
+        let coarse = self.coarse_searches.iter().map(CoarseSearch::steps);
+        let steps = coarse.sum::<usize>() + self.steps;
         match &self.ended {
             Ended::Completed => format!("{steps} steps"),
             Ended::Stopped if steps == 0 => "not begun".to_owned(),
