@@ -236,7 +236,7 @@ fn a_final_design_has_the_forces_of_the_solver() {
     let run = Scene::read(&scene_file(&found.scene.output()).unwrap()).unwrap();
     assert_eq!(run.config.level, Level::Final);
     let problem = run.problem().unwrap();
-    let deployed = problem.deploy(&run.start()).unwrap();
+    let deployed = problem.deploy(&found.search.best).unwrap();
     let (designs, states) = (deployed.sheet.designs(), &deployed.final_step().deformations);
     let law = problem.model.mechanics().unwrap().law.clone();
     let forces = law.prepare(&designs).energies(states, Order::Forces);
