@@ -39,8 +39,8 @@ pub struct TrimmedPanel {
     pub outer: Vec<usize>,
 }
 
-/// To a billionth of a panel's side, far below the tolerance of a cut.
-fn short(x: f64) -> f64 {
+/// To a billionth of a panel's side or of a millimetre, far below the tolerance of a cut.
+pub fn short(x: f64) -> f64 {
     (1e9 * x).round() / 1e9
 }
 

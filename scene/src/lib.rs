@@ -51,7 +51,7 @@ pub use actuation::{
     SupportConfig, SupportKind,
 };
 pub use boundary_values::{Actuation, AppliedLoad, SupportedPanel, panel_name};
-pub use cells::{CellsConfig, TrimmedPanel};
+pub use cells::{CellsConfig, TrimmedPanel, short};
 pub use checked_scene::Scene;
 pub use coarse_search::{CoarseSearch, LevelDifference};
 pub use cutting::CuttingConfig;

@@ -17,7 +17,7 @@ use faer::c64;
 use hinge::Regime;
 use scene::{
     At, CellsConfig, Level, Posture, PostureConfig, Scene, SceneConfig, StartConfig, SupportConfig,
-    SupportKind, rounded,
+    SupportKind, rounded, short,
 };
 use std::f64::consts::FRAC_PI_2;
 use support::{Fault, fault, refuse};
@@ -261,7 +261,7 @@ impl<'a> LaidSheet<'a> {
         let mut config = scene.config.clone();
         config.sheet.size = None;
         config.sheet.corners =
-            Some(corners.map(|at| self.in_sheet(self.first + complex(at)).map(rounded)));
+            Some(corners.map(|at| self.in_sheet(self.first + complex(at)).map(short)));
         config.sheet.panels = [self.grid.m, self.grid.n];
         config.cells = Some(CellsConfig::from(self.topology));
         let kind = match scene.material.regime(width(scene)) {

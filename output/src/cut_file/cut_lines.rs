@@ -42,9 +42,9 @@ use support::{Fault, ensure};
 
 /// The least 1 + cos of the turn of an outline at a corner that moves in full with its edges.
 const SHARPEST: f64 = 0.1;
-/// Rounding of lengths in a sheet of up to a metre (mm), of which a scene states six digits; in
-/// proportion in a larger one.
-const ROUNDING: f64 = 1e-3;
+/// Rounding of lengths in a sheet of up to a metre (mm); in proportion in a larger one, since corners of
+/// the union of panels are on a raster of a billionth of its size.
+const ROUNDING: f64 = 1e-5;
 const METRE: f64 = 1000.0;
 
 /// One straight cut through the sheet.
