@@ -83,10 +83,10 @@ pub(super) fn no_section(name: &str) -> Fault {
     format!("the level of the scene needs the section [{name}]").into()
 }
 
-/// Maximum ratio of the perimeters of the box around the target and of the flat sheet. Panels keep
-/// their edges: a sheet of squares opens to twice its width; a sheet of slender panels opens
-/// further, but along one axis only.
-const OPENS_TO: f64 = 4.0;
+/// Maximum ratio of the target's perimeter to the perimeter of the flat sheet. Panels keep their
+/// edges: a sheet of squares opens to twice its width; a sheet of slender panels opens further, but
+/// along one axis only.
+const OPENS_TO: f64 = 3.0;
 
 /// Maximum distance between the middles of target and flat sheet (mm): supports move a sheet by 100
 /// m at most.
@@ -101,9 +101,10 @@ pub(super) fn target(target: &Target, scene: &SceneConfig) -> Result<(), Fault> 
     let outline = scene.sheet.outline();
     let perimeter: f64 = edges(&outline.corners).map(|(p, q)| distance(p, q)).sum();
     let [width, height] = size(bounds(target.points.iter().copied()));
-    let around = 2.0 * (width + height);
+    // Limbs lengthen an outline, and not the box around it.
+    let length = target.length.min(2.0 * (width + height));
     let limits = [0.2 * perimeter, OPENS_TO * perimeter];
-    within("perimeter of the box around the target", around, limits, "mm").map_err(|error| {
+    within("length of the target outline", length, limits, "mm").map_err(|error| {
         format!("{error} (the outline of the flat sheet is {perimeter:.0} mm long)")
     })?;
     let away = distance(target.mean(), mean(&outline.corners));

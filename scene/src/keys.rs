@@ -95,7 +95,8 @@ pub struct SceneConfig {
     /// Settings of the equilibrium solver: of code, not keys.
     #[serde(skip)]
     pub solver: SolverSettings,
-    /// The target outline; the box around it must have 0.2 to 4 times the perimeter of the flat sheet.
+    /// The target outline; it, or a box around it, must be 0.2 to 3 times as long as the outline of
+    /// the flat sheet.
     pub target: TargetShape,
     /// The objective (16) and its weights.
     #[serde(default)]

@@ -60,7 +60,7 @@ k_theta = 300.0 => k_theta = -300.0 => linear.k_theta
 k_a = 400.0 => k_a = 4e8 => did you mean 400000 N/mm
 k_a = 400.0|k_s = 250.0|k_theta = 300.0 => k_a = 1e6|k_s = 1e6|k_theta = 1e-3 => lost in the rounding
 force = [40.0, 0.0] => force = [nan, 0.0] => loads[0].force
-radius = 2268.0 => radius = 2.268 => did you mean 18144
+radius = 2268.0 => radius = 2.268 => did you mean 14250
 radius = 2268.0 => radius = -2268.0 => target.circle.radius = -2268 mm
 learning_rate = 0.05 => learning_rate = 0.0 => optimiser.learning_rate
 load_steps = 10 => load_steps = 0 => 1 <= load_steps
