@@ -10,9 +10,7 @@ use design::geometry::polygon::bounds;
 use design::hinge_law::{DamageMeasure, Order, PreparedLaw, ReleasedLaw};
 use design::objective::design_problem::{Deployment, DesignProblem};
 use design::sheet::cut_sheet::Sheet;
-use design::sheet::kinematics::{
-    Configuration, Motion, corner_distances, deployed, deployed_boundaries,
-};
+use design::sheet::kinematics::{Configuration, corner_distances, deployed, deployed_boundaries};
 use hinge::SheetMaterial;
 use scene::placement::placed;
 use scene::{Posture, Scene};
@@ -131,7 +129,7 @@ impl Mounting {
             }
         });
         let fasteners = fasteners.collect();
-        let [opened, stays] = [end, rest].map(|state| mean_rotation(sheet, state));
+        let [opened, stays] = [last, free.end()].map(LoadStep::mean_opening);
         let moments = law.energies(&last.deformations, Order::Forces).into_iter();
         let moment = moments.fold(0.0, |most, hinge| f64::max(most, hinge.forces[2].abs()));
         let by_hand = (stays > FLAT * opened).then_some(ByHand { opened, stays, moment });
@@ -152,14 +150,6 @@ impl Mounting {
 
 fn reaches(path: &[LoadStep]) -> bool {
     path.last().is_none_or(|last| last.status != Status::Diverged)
-}
-
-fn mean_rotation(sheet: &Sheet, state: &[Motion]) -> f64 {
-    let turned = sheet.hinges.iter().map(|hinge| {
-        let [a, b] = [hinge.panel_a(), hinge.panel_b()].map(|panel| state[panel][2]);
-        (b - a).abs()
-    });
-    turned.sum::<f64>() / sheet.hinges.len() as f64
 }
 
 /// Number of hinges outside the training domain on a way, and if there are none the largest peak
