@@ -1,5 +1,5 @@
 #!/bin/bash
-# A task of the array that `kirigami campaign submit` hands to Slurm (docs/CLUSTER.md), and the job after it. Arguments: the
+# A task of the array that `scripts/slurm-campaign` hands to Slurm (docs/CLUSTER.md), and the job after it. Arguments: the
 # number of tasks, and the command, to which a task adds its shard.
 #SBATCH --requeue
 #SBATCH --open-mode=append

@@ -5,6 +5,5 @@ pub(crate) mod definition;
 pub(crate) mod extra_rays;
 pub(crate) mod run;
 pub(crate) mod sampling;
-pub(crate) mod slurm;
 pub(crate) mod spot_paths;
 pub(crate) mod status;

@@ -100,11 +100,8 @@ pub use campaign::campaign_folder::{Shard, finished_windows};
 pub use campaign::definition::{Campaign, JobPart};
 pub use campaign::run::{CollectedWindow, Progress, Restored, RunOptions, restore, run};
 pub use campaign::sampling::RayBox;
-pub use campaign::slurm::{
-    ArrayStates, ArrayTasks, Submission, array_states, slurm_folder, submit_array,
-};
 pub use campaign::spot_paths::{DrawnStates, SpotPath, random_paths};
-pub use campaign::status::{Plan, Status, Tally, Throughput, known_parts, plan, prepare, status};
+pub use campaign::status::{Plan, Status, Tally, Throughput, known_parts, plan, status};
 pub use sheet::sheet_problem::{
     Held, History, OutOfPlaneRestraint, Place, Pulled, SheetProblem, SheetSolve,
 };

@@ -6,7 +6,6 @@ mod plan;
 mod restore;
 mod run;
 mod status;
-mod submit;
 
 pub(crate) use campaign_args::{DATABASE, SPOT_CHECK};
 pub(crate) use run::RayProgress;
@@ -19,7 +18,6 @@ subcommands! {
     pub(crate) enum CampaignCommand {
         Plan(plan::PlanCommand),
         Run(run::RunCommand),
-        Submit(submit::SubmitCommand),
         Status(status::StatusCommand),
         Collect(collect::CollectCommand),
         Restore(restore::RestoreCommand),

@@ -12,7 +12,7 @@ use std::process::{Command, Output};
 use tempfile::TempDir;
 use toml_edit::{ArrayOfTables, DocumentMut, Table};
 
-const PROGRAM: &str = env!("CARGO_BIN_EXE_kirigami");
+pub(crate) const PROGRAM: &str = env!("CARGO_BIN_EXE_kirigami");
 
 pub(crate) struct Workplace {
     folder: TempDir,

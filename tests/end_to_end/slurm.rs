@@ -2,7 +2,7 @@
 //! cancelled, stopped, frozen until their time limit and lost with their node, the controller is
 //! restarted, and the database equals the database of one run.
 
-use crate::common::{Workplace, failure};
+use crate::common::{PROGRAM, Workplace, failure};
 use dataset::{Database, Row, SplitPlan};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
@@ -11,6 +11,15 @@ use std::time::{Duration, Instant};
 use tempfile::TempDir;
 
 pub(crate) const CAMPAIGN: &str = "configs/campaigns/tiny.toml";
+
+/// `scripts/slurm-campaign` in the folder of a test.
+pub(crate) fn on_slurm(work: &Workplace, arguments: &str) -> Command {
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("scripts/slurm-campaign");
+    let mut command = Command::new(script);
+    command.current_dir(work.path("")).env("KIRIGAMI", PROGRAM);
+    command.args(arguments.split_whitespace());
+    command
+}
 
 /// Slurm and a workplace; dropping it ends every daemon.
 struct Cluster {
@@ -57,6 +66,7 @@ impl Cluster {
         let (program, arguments) = line.split_once(' ').unwrap();
         let mut command = match program {
             "kirigami" => self.work.program(arguments),
+            "slurm-campaign" => on_slurm(&self.work, arguments),
             _ => {
                 let mut command = Command::new(program);
                 command.args(arguments.split(' '));
@@ -90,7 +100,12 @@ impl Cluster {
     }
 
     fn submit(&self) -> String {
-        self.output(&format!("kirigami campaign submit {CAMPAIGN} --shards 4 --time 1"))
+        self.output(&format!("slurm-campaign {CAMPAIGN} 4 1"))
+    }
+
+    /// The states of the tasks and of the collecting job of the last submission, `array` first.
+    fn states(&self) -> String {
+        self.output(&format!("slurm-campaign {CAMPAIGN}"))
     }
 
     fn status(&self) -> Value {
@@ -165,8 +180,8 @@ fn hostile_names_reach_slurm_as_they_are() {
     let (campaign, folder) = (format!("configs/campaigns/{name}.toml"), format!("runs/{name}"));
     std::fs::rename(cluster.work.path(CAMPAIGN), cluster.work.path(&campaign)).unwrap();
     let submit = || {
-        let mut command = cluster.command("kirigami campaign submit");
-        command.args([&campaign, "--folder", &folder, "--shards=1", "--time=1"]);
+        let mut command = cluster.command("slurm-campaign --folder");
+        command.args([&folder, &campaign, "1", "1"]);
         command.output().unwrap()
     };
     cluster.output("scontrol update nodename=n1,n2 state=drain reason=test");
@@ -177,7 +192,7 @@ fn hostile_names_reach_slurm_as_they_are() {
     assert!(jobs.contains("JobName=a--b----HOME---c-----"), "{jobs}");
 
     // What a submission leaves that was killed before its record.
-    std::fs::remove_file(logs.join("submission.json")).unwrap();
+    std::fs::remove_file(logs.join("submission")).unwrap();
     let refused = submit();
     let message = String::from_utf8(refused.stderr).unwrap();
     assert_eq!(refused.status.code(), Some(1), "{message}");
@@ -192,8 +207,8 @@ fn hostile_names_reach_slurm_as_they_are() {
 
     let broken = "configs/campaigns/a\n#SBATCH --hold.toml";
     std::fs::copy(cluster.work.path(&campaign), cluster.work.path(broken)).unwrap();
-    let mut command = cluster.command("kirigami campaign submit");
-    let message = failure(command.args([broken, "--shards=1", "--time=1"]));
+    let mut command = cluster.command("slurm-campaign --folder");
+    let message = failure(command.args([&broken.replace(".toml", ""), broken, "1", "1"]));
     assert!(message.contains("cannot list this name"), "{message}");
 }
 
@@ -213,9 +228,10 @@ fn restart_controller(cluster: &Cluster) {
 fn a_campaign_on_slurm_gives_the_database_of_one_run() {
     let cluster = Cluster::up();
     let submitted = cluster.submit();
-    assert!(submitted.contains("43 rays to solve"), "{submitted}");
-    let array = cluster.status()["slurm"]["array"].as_str().unwrap().to_owned();
-    let again = format!("kirigami campaign submit {CAMPAIGN} --shards 4 --time 1");
+    assert!(submitted.contains("43 open") && submitted.contains("with 4 tasks"), "{submitted}");
+    let (_, array) = submitted.split_once("array ").unwrap();
+    let array = array.split(' ').next().unwrap().to_owned();
+    let again = format!("slurm-campaign {CAMPAIGN} 4 1");
     let refused = cluster.command(&again).output().unwrap();
     assert_eq!(refused.status.code(), Some(1));
     let message = String::from_utf8(refused.stderr).unwrap();
@@ -257,24 +273,26 @@ fn a_campaign_on_slurm_gives_the_database_of_one_run() {
 
     let collected = cluster.work.path("runs/tiny/hinges.parquet");
     let ended = |state: &str| {
-        let status = cluster.status();
-        assert!(state == "completed" || status["slurm"]["collect_state"] != "completed");
-        status["slurm"]["collect_state"] == state
+        let states = cluster.states();
+        let (first, tasks) = states.split_once(" to collect:\n").unwrap();
+        let (_, job) = first.split_once(", job ").unwrap();
+        let is = |line: &str, state: &str| line == format!("{job} {state}");
+        assert!(state == "completed" || !tasks.lines().any(|line| is(line, "completed")));
+        tasks.lines().any(|line| is(line, state)).then(|| tasks.to_owned())
     };
-    cluster.until("the array has ended", || ended("failed"));
-    let status = cluster.status();
-    let expected = serde_json::json!({ "cancelled": 1, "completed": 2, "timeout": 1 });
-    assert_eq!(status["slurm"]["tasks"], expected, "{}", cluster.queue());
+    cluster.until("the array has ended", || ended("failed").is_some());
+    let (states, status) = (ended("failed").unwrap(), cluster.status());
+    for (state, count) in [("cancelled", 1), ("completed", 2), ("timeout", 1)] {
+        assert_eq!(states.matches(state).count(), count, "{states} {}", cluster.queue());
+    }
     assert!(status["tally"]["open"].as_u64().unwrap() > 0, "{status}");
     assert!(!collected.exists(), "nothing is collected while rays are missing");
     let log = format!("runs/tiny/slurm/tiny-{array}-4.log");
     let log = std::fs::read_to_string(cluster.work.path(&log)).unwrap();
     assert!(log.contains("run the same command again"), "{log}");
-    let shown = cluster.output(&format!("kirigami campaign status {CAMPAIGN}"));
-    assert!(shown.contains("1 cancelled, 2 completed, 1 timeout"), "{shown}");
 
     cluster.submit();
-    cluster.until("the database is collected", || ended("completed"));
+    cluster.until("the database is collected", || ended("completed").is_some());
     assert_eq!(cluster.status()["tally"]["complete"], 43);
     assert!(timeless(&collected) == whole, "the databases differ");
     let [spot, of_whole] = ["tiny", "whole"].map(|folder| {

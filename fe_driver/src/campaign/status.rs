@@ -1,8 +1,8 @@
 //! The state of a campaign: counts, costs, throughput.
 
 use crate::{
-    Campaign, CampaignFolder, FailureKind, Index, Job, JobPart, Shard, Solve, SolveListError,
-    SolveRecord, SolveState, ToolVersions, WindowSolve, short_hash, unless_damaged,
+    Campaign, CampaignFolder, FailureKind, Index, Job, JobPart, Solve, SolveListError, SolveRecord,
+    SolveState, ToolVersions, WindowSolve, short_hash, unless_damaged,
 };
 use hinge::SheetMaterial;
 use mesher::Tier;
@@ -289,29 +289,17 @@ pub fn plan(
     })
 }
 
-/// Enters the jobs of the campaign in `folder` before any of them is solved, so that every shard
-/// finds the same jobs and the same versions of gmsh and ccx.
-pub fn prepare(
-    campaign: &Campaign,
-    folder: &Path,
-    versions: &ToolVersions,
-) -> Result<(), SolveListError> {
-    let index = Index::new(&campaign.name, &campaign.solves(versions).collect::<Vec<_>>());
-    CampaignFolder(folder.to_owned()).enter(Shard::WHOLE, &index)?;
-    Ok(())
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::Shard;
     use crate::campaign::definition::tests::of_two_boxes;
     use crate::campaign::run::{RunOptions, run};
-    use crate::campaign::status::prepare;
     use crate::solve::solve_folder::SolveFolder;
     use crate::solve::solver::Solver;
     use crate::solve::tests::{healthy, solve_on};
     use std::sync::atomic::AtomicBool;
+    use std::time::Duration;
 
     fn solved(cpu_seconds: f64, wall_seconds: f64) -> Option<SolveRecord> {
         Some(SolveRecord {
@@ -366,13 +354,15 @@ mod tests {
         let error = known(&campaign).unwrap_err();
         assert!(error.to_string().contains("contains no campaign"), "{error}");
         // Jobs without a file are unknown.
-        prepare(&campaign, folder.path(), &solver.versions()).unwrap();
-        assert_eq!(known(&campaign).unwrap(), HashMap::new());
-        let options =
-            RunOptions { shard: Shard::WHOLE, workers: 1, time_limit: None, retry: false };
         let stop = AtomicBool::new(false);
-        let progress = run(&campaign, folder.path(), &solver, &options, &stop, &mut |_| {});
-        assert_eq!(progress.unwrap().tally.complete, campaign.size());
+        let solved = |time_limit| {
+            let options = RunOptions { shard: Shard::WHOLE, workers: 1, time_limit, retry: false };
+            let ended = run(&campaign, folder.path(), &solver, &options, &stop, &mut |_| {});
+            ended.unwrap().tally.complete
+        };
+        assert_eq!(solved(Some(Duration::ZERO)), 0);
+        assert_eq!(known(&campaign).unwrap(), HashMap::new());
+        assert_eq!(solved(None), campaign.size());
 
         let parts = known(&campaign).unwrap();
         let jobs = campaign.jobs(&solver.versions());

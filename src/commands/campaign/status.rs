@@ -3,10 +3,8 @@
 use super::campaign_args::{CampaignArgs, print_tally};
 use anyhow::Result;
 use clap::Args;
-use fe_driver::{ArrayStates, Status};
-use serde::Serialize;
 
-/// Print the state of the jobs, the reasons of failures, the throughput, and the tasks on a cluster
+/// Print the state of the jobs, the reasons of failures, and the throughput
 #[derive(Args)]
 pub(crate) struct StatusCommand {
     #[command(flatten)]
@@ -16,27 +14,13 @@ pub(crate) struct StatusCommand {
     json: bool,
 }
 
-/// What `--json` prints.
-#[derive(Serialize)]
-struct Report {
-    #[serde(flatten)]
-    status: Status,
-    /// The last submission to Slurm; null if there is none, or if Slurm does not answer.
-    slurm: Option<ArrayStates>,
-}
-
 impl StatusCommand {
     pub(super) fn run(&self) -> Result<()> {
         let folder = self.campaign.folder();
         fe_driver::known_parts(&self.campaign.load()?, &folder)?;
         let status = fe_driver::status(&folder)?;
-        let (slurm, silent) = match fe_driver::array_states(&folder) {
-            Err(error) => (None, Some(error)),
-            Ok(states) => (states, None),
-        };
         if self.json {
-            let report = Report { status, slurm };
-            println!("{}", serde_json::to_string_pretty(&report)?);
+            println!("{}", serde_json::to_string_pretty(&status)?);
             return Ok(());
         }
         print_tally(&status.tally);
@@ -49,12 +33,6 @@ impl StatusCommand {
                 pace.cpu_seconds_per_sample,
                 100.0 * pace.overhead
             );
-        }
-        if let Some(states) = slurm {
-            println!("{states}");
-        }
-        if let Some(error) = silent {
-            println!("{error}");
         }
         Ok(())
     }
