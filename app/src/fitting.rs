@@ -10,15 +10,19 @@ use hinge::Regime;
 use scene::{Scene, placement::NOT_SEEN};
 
 /// Makes the sheet that opens onto the target of a scene; also returns what a person may expect of
-/// it. A sheet that shows too little of its target is refused unless `anyway`.
-pub fn fit_to_target(scene: &Scene, anyway: bool) -> Result<(FittedScene, String)> {
+/// it. Its panels have a side (mm), or else the smallest one that they can have. A sheet that shows too little of its target is refused unless `anyway`.
+pub fn fit_to_target(
+    scene: &Scene,
+    side: Option<f64>,
+    anyway: bool,
+) -> Result<(FittedScene, String)> {
     announce("laying an even pattern over the target, in some seconds");
     scene.target.notes.iter().for_each(|note| announce(&format!("the drawing: {note}")));
-    let fit = fitted(scene)?;
+    let fit = fitted(scene, side)?;
     let expected = expected(&fit, scene.material.thickness);
     ensure!(
         anyway || fit.seen >= NOT_SEEN,
-        "{expected}\na viewer would not recognise it: change the drawing, the stock or the thickness; `init --anyway` and `design --fit --force` make the sheet"
+        "{expected}\na viewer would not recognise it: change the drawing, the stock or the thickness, or make the sheet with --anyway"
     );
     Ok((fit, expected))
 }

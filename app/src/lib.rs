@@ -19,6 +19,7 @@ pub mod fitting;
 pub mod input_file;
 pub mod new_project;
 pub mod output_file;
+pub mod own_drawing;
 pub mod picture;
 pub mod progress;
 pub mod run_folder;

@@ -18,6 +18,7 @@ use crate::{
         template::Template,
     },
     output_file,
+    own_drawing::OwnDrawing,
     shell_word::shell_word,
 };
 use analysis::{
@@ -50,8 +51,10 @@ pub struct NewProject {
     pub stock: Option<Stock>,
     /// Border of the stock that the machine cannot cut (mm).
     pub margin: Option<f64>,
-    /// Outline that the sheet opens onto (SVG or DXF).
+    /// Outline that the sheet opens onto (SVG, DXF, PNG or JPEG).
     pub target: Option<PathBuf>,
+    /// Side of the panels of a sheet for a drawing (mm).
+    pub panel_side: Option<f64>,
     /// Weights for the material.
     pub weights: Option<PathBuf>,
     /// Name of the service that cuts the sheet.
@@ -117,7 +120,8 @@ impl NewProject {
         }
         let own = self.folder.join("weights.safetensors");
         let file = weights.map_or(&own, |weights| &weights.file);
-        let mut scene = first.text(&self.folder, file, self.target.as_deref())?;
+        let drawing = self.target.as_deref().map(OwnDrawing::read).transpose()?;
+        let mut scene = first.text(&self.folder, file, drawing.as_ref())?;
         if let Some(weights) = weights {
             scene = weights.known_part(&scene, sheet.thickness / measured.thickness)?;
         }
@@ -138,6 +142,7 @@ impl NewProject {
         write("material.toml", &text)?;
         write("campaign.toml", &campaign)?;
         write(TRAINING, template.training)?;
+        drawing.map_or(Ok(()), |drawing| drawing.write(&self.folder, ""))?;
         let (mut expected, mut hangs) = (String::new(), true);
         if trained {
             // A refused service or drawing leaves the name of the folder free.
@@ -170,7 +175,7 @@ impl NewProject {
             scene = scene.changed(config)?;
         }
         if self.target.is_some() {
-            (text, expected) = fitted_text(&scene, &text, self.anyway)?;
+            (text, expected) = fitted_text(&scene, &text, self.panel_side, self.anyway)?;
             scene = read(&text)?;
         }
         let hangs = scene.config.posture.is_none_or(|it| it.kind == Posture::Hanging);

@@ -1,6 +1,7 @@
 //! The cells of a sheet: which voids of its pattern are kept, and the shapes of the panels that are
 //! trimmed.
 
+use crate::rounding::short;
 use design::{
     geometry::polygon::{area, self_crossing},
     pattern::grid::Grid,
@@ -37,11 +38,6 @@ pub struct TrimmedPanel {
     /// distance from it is measured.
     #[serde(default)]
     pub outer: Vec<usize>,
-}
-
-/// To a billionth of a panel's side or of a millimetre, far below the tolerance of a cut.
-pub fn short(x: f64) -> f64 {
-    (1e9 * x).round() / 1e9
 }
 
 impl From<&Topology> for CellsConfig {

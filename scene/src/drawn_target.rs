@@ -1,32 +1,10 @@
 //! A drawing as the target of a sheet.
 
-use crate::target::{Target, TargetShape};
+use crate::{rounding::rounded, target::TargetShape};
 use design::geometry::{
     plane::{complex, point},
-    polygon,
     similarity::Similarity,
 };
-use std::path::Path;
-use support::Fault;
-
-/// Points along a drawn outline from which its area is computed.
-const DRAWING_POINTS: usize = 2000;
-
-/// Centre of the bounding box and height (mm) at which the outline of a drawing (SVG or DXF), with
-/// its holes, has the given area (mm^2) and the mean of its points at `centre` (mm).
-pub fn place_drawing(file: &Path, centre: [f64; 2], area: f64) -> Result<([f64; 2], f64), Fault> {
-    let of_height_1 = TargetShape::Svg {
-        file: file.to_owned(),
-        centre: [0.0; 2],
-        height: Some(1.0),
-        rotation_deg: 0.0,
-    };
-    let outline = Target::sample(&of_height_1, Path::new(""), DRAWING_POINTS)?;
-    let height = rounded((area / polygon::area(&outline.points).abs()).sqrt());
-    let offset = outline.mean();
-    let placed = [0, 1].map(|i| rounded(centre[i] - height * offset[i]));
-    Ok((placed, height))
-}
 
 impl TargetShape {
     /// The shape after a motion and a change of size. `points` are samples of it, which stand for a
@@ -58,15 +36,12 @@ impl TargetShape {
     }
 }
 
-/// To six significant digits, so that a product of two short numbers is short.
-pub fn rounded(x: f64) -> f64 {
-    format!("{x:.5e}").parse().unwrap_or(x)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::target::Target;
     use faer::c64;
+    use std::path::Path;
 
     #[test]
     fn a_shape_is_placed_as_its_points_are() {

@@ -37,6 +37,7 @@ mod other_level;
 pub mod placement;
 mod posture;
 mod problem;
+mod rounding;
 pub mod run_inputs;
 mod sheet_config;
 mod solved_hinges;
@@ -51,17 +52,17 @@ pub use actuation::{
     SupportConfig, SupportKind,
 };
 pub use boundary_values::{Actuation, AppliedLoad, SupportedPanel, panel_name};
-pub use cells::{CellsConfig, TrimmedPanel, short};
+pub use cells::{CellsConfig, TrimmedPanel};
 pub use checked_scene::Scene;
 pub use coarse_search::{CoarseSearch, LevelDifference};
 pub use cutting::CuttingConfig;
 pub use design::objective::terms::ObjectiveConfig;
-pub use drawn_target::{place_drawing, rounded};
 pub use hinge_model::{LinearConstants, PinConfig, SurrogateFile};
 pub use keys::{OptimiserConfig, SceneConfig};
 pub use level::Level;
 pub use loaded_hinge::LoadedHinge;
 pub use posture::{FRICTION, Posture, PostureConfig};
+pub use rounding::{rounded, short};
 pub use sheet_config::{LigamentConfig, SheetConfig, StartConfig};
 pub use solved_hinges::{SolvedHinge, SolvedHinges};
 pub use stock::{Paper, Stock};

@@ -1,6 +1,9 @@
 //! The target outline T of (16): a closed curve, sampled densely at equal arc lengths.
 
-use crate::drawing::{drawn_outline, outline_points};
+use crate::{
+    drawing::{drawn_outline, outline_points},
+    rounding::rounded,
+};
 use design::geometry::{
     plane::{complex, point},
     polygon,
@@ -14,7 +17,7 @@ use std::{
     f64::consts::TAU,
     path::{Path, PathBuf},
 };
-use support::{Fault, at, ensure, key_limits, regular_file};
+use support::{Fault, at, ensure, fault, key_limits, regular_file};
 
 /// A target as written in a scene; lengths in mm, in the coordinates of the flat sheet.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -97,6 +100,8 @@ impl TargetShape {
 
 /// Number of points on the target of a scene.
 pub const TARGET_POINTS: usize = 1000;
+/// Points along a drawn outline from which its area is computed.
+const DRAWING_POINTS: usize = 2000;
 
 /// The sampled target.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -146,27 +151,52 @@ impl Target {
                 let named = &path.display();
                 let bytes = regular_file::read(&path);
                 let bytes = bytes.map_err(at(format!("cannot read the target outline {named}")))?;
-                let drawn = drawn_outline::of_file(&bytes, number).map_err(at(named))?;
-                let [_, own] = polygon::size(polygon::bounds(drawn.vertices.iter().copied()));
-                let height = height.or(drawn.has_unit.then_some(own));
-                let height = height.ok_or_else(|| {
-                    format!("{named}: the drawing states no unit: give `height` (mm)")
-                })?;
-                let place = place(&drawn.vertices, *centre, height, *rotation_deg)?;
-                let placed = |vertices: &Vec<[f64; 2]>| -> Vec<[f64; 2]> {
-                    vertices.iter().map(|vertex| point(place.of(complex(*vertex)))).collect()
-                };
-                let holes = drawn.holes.iter().map(placed).collect();
-                let gap = drawn.gap * height / own;
-                let closed = (gap > 0.0).then(|| {
-                    format!(
-                        "it is open: a straight line of {gap:.2} mm was added, as viewers fill it"
-                    )
-                });
-                let notes = closed.into_iter().chain(drawn.warnings).collect();
-                Ok(Self { notes, holes, ..along_polygon(&placed(&drawn.vertices), count)? })
+                Self::drawn(&bytes, number, *centre, *height, *rotation_deg, count)
+                    .map_err(at(named))
             }
         }
+    }
+
+    /// Samples the outline with a number in the bytes of a drawing.
+    fn drawn(
+        bytes: &[u8],
+        number: Option<usize>,
+        centre: [f64; 2],
+        height: Option<f64>,
+        rotation_deg: f64,
+        count: usize,
+    ) -> Result<Self, Fault> {
+        let drawn = drawn_outline::of_file(bytes, number)?;
+        let [_, own] = polygon::size(polygon::bounds(drawn.vertices.iter().copied()));
+        let height = height.or(drawn.has_unit.then_some(own));
+        let height =
+            height.ok_or_else(|| fault!("the drawing states no unit: give `height` (mm)"))?;
+        let place = place(&drawn.vertices, centre, height, rotation_deg)?;
+        let placed = |vertices: &Vec<[f64; 2]>| -> Vec<[f64; 2]> {
+            vertices.iter().map(|vertex| point(place.of(complex(*vertex)))).collect()
+        };
+        let holes = drawn.holes.iter().map(placed).collect();
+        let gap = drawn.gap * height / own;
+        let closed = (gap > 0.0).then(|| {
+            format!("it is open: a straight line of {gap:.2} mm was added, as viewers fill it")
+        });
+        let notes = closed.into_iter().chain(drawn.warnings).collect();
+        Ok(Self { notes, holes, ..along_polygon(&placed(&drawn.vertices), count)? })
+    }
+
+    /// Centre of the bounding box and height (mm) at which the outline with a number in the bytes of
+    /// a drawing (SVG or DXF), with its holes, has the given area (mm^2) and the mean of its points
+    /// at `centre` (mm).
+    pub fn place_drawing(
+        bytes: &[u8],
+        number: Option<usize>,
+        centre: [f64; 2],
+        area: f64,
+    ) -> Result<([f64; 2], f64), Fault> {
+        let outline = Self::drawn(bytes, number, [0.0; 2], Some(1.0), 0.0, DRAWING_POINTS)?;
+        let height = rounded((area / polygon::area(&outline.points).abs()).sqrt());
+        let offset = outline.mean();
+        Ok(([0, 1].map(|i| rounded(centre[i] - height * offset[i])), height))
     }
 
     /// BLAKE3 hash of the samples and the holes.

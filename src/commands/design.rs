@@ -13,9 +13,8 @@ use app::{
     design::{ended, hold, write_run},
     design_runs::{Run, compare, refuse_shared_folders},
     failure::Unfinished,
-    fitting::fit_to_target,
     output_file,
-    progress::{Progress, announce},
+    progress::Progress,
 };
 use clap::Args;
 use design::{
@@ -71,11 +70,6 @@ pub struct DesignCommand {
     /// Number of search steps, instead of the scene's; of several levels, of each at most
     #[arg(long, value_name = "N")]
     steps: Option<usize>,
-    /// First lay an even pattern over the target, in the space of the sheet, as `init --target`
-    /// does. What the scene states of cells, supports, loads, posture, weights of the objective and
-    /// optimiser is replaced; the run's scene.toml has what was chosen
-    #[arg(long)]
-    fit: bool,
     /// Begin at the start design even if the run folder contains a run of this scene
     #[arg(long)]
     restart: bool,
@@ -233,13 +227,6 @@ impl DesignCommand {
         let mut scene = Scene::new(config, &path)?;
         if let Some(level) = self.level.filter(|_| !self.by_elements(scene.config.level)) {
             scene = scene.at_level(level)?;
-        }
-        if self.fit {
-            let (fit, expected) = fit_to_target(&scene, self.force)?;
-            announce(&expected);
-            config = fit.config;
-            config.optimiser.steps = self.steps.unwrap_or(config.optimiser.steps);
-            scene = scene.changed(config)?;
         }
         Ok(scene)
     }

@@ -44,10 +44,14 @@ pub struct InitCommand {
     #[arg(long, value_name = "MM", value_parser = length, requires = "stock")]
     margin: Option<f64>,
     /// Drawing that the sheet opens onto (SVG or DXF, with holes; FILE#2 is its second largest
-    /// contour), in any position and of any size: an even pattern of square panels is laid over it
-    /// and trimmed to it [default: the opened sheet's rectangle]
+    /// contour; PNG and JPEG are traced), in any position and of any size: an even pattern of square
+    /// panels is laid over it and trimmed to it [default: the opened sheet's rectangle]
     #[arg(long, value_name = "FILE")]
     target: Option<PathBuf>,
+    /// Side of the panels (mm): larger ones are fewer, and show less of the drawing [default: the
+    /// smallest that has room for its hinges, 2.25 window radii]
+    #[arg(long, value_name = "MM", value_parser = length, requires = "target")]
+    panel_side: Option<f64>,
     /// Make the sheet although less than 75 % of the target is seen
     #[arg(long, requires = "target")]
     anyway: bool,
@@ -70,6 +74,7 @@ impl InitCommand {
             stock,
             margin,
             target,
+            panel_side,
             anyway,
             service,
             weights,
@@ -82,6 +87,7 @@ impl InitCommand {
             stock,
             margin,
             target,
+            panel_side,
             weights,
             service,
             any_width: false,

@@ -99,8 +99,9 @@ impl Engine {
                 }
                 self.stop_search.store(false, Ordering::Relaxed);
             }
-            Request::Change(_) if matches!(waiting.requests.back(), Some(Request::Change(_))) => {
-                waiting.requests.pop_back();
+            Request::Change(_) | Request::Crop { .. } => {
+                let kind = std::mem::discriminant(&request);
+                waiting.requests.pop_back_if(|last| std::mem::discriminant(last) == kind);
             }
             _ => {}
         }

@@ -34,6 +34,10 @@ pub enum Kind {
     Says,
     /// What a person may expect of the sheet that was fitted to a drawing.
     Fit,
+    /// The pieces of a drawing, one of which can be a sheet.
+    Pieces,
+    /// The panels of another side that would show a drawing.
+    Crop,
     /// The cost and the accuracy of the levels of a sheet.
     Levels,
     /// The files of its run, and what services say of them.

@@ -1,16 +1,14 @@
 //! The sheet that is open: its scene, what was before it, and its runs.
 
 use crate::project::Project;
-use analysis::fit::scene::fitted;
+use analysis::fit::scene::{cropped, fitted, smallest_side};
 use anyhow::Result;
-use app::{cut::Verdict, fitting::expected};
+use app::{cut::Verdict, fitting::expected, own_drawing::OwnDrawing};
 use design::{equilibrium::warm_start::WarmStart, optimise::outer_loop::Ended};
-use scene::{Scene, SceneConfig, place_drawing, target::TargetShape};
+use scene::{Scene, SceneConfig, target::TargetShape};
 use serde_json::{Value, json};
-use std::{
-    collections::BTreeMap,
-    path::{Path, PathBuf},
-};
+use std::{collections::BTreeMap, path::PathBuf};
+use support::Fault;
 
 /// An opened sheet.
 pub(crate) struct Opened {
@@ -24,6 +22,8 @@ pub(crate) struct Opened {
     /// The page that made the last change, and the number of its changes; `None` if no page did, as
     /// after an undo.
     pub by: Option<(String, u64)>,
+    /// The keys before the sheet was fitted to a drawing: their sheet is the space for another fit.
+    pub space: Option<SceneConfig>,
     /// The last equilibrium, from which a draft starts.
     pub known: Option<WarmStart>,
     /// The runs, each in a folder of its own.
@@ -71,16 +71,54 @@ impl Run {
     }
 }
 
-/// A sheet that is fitted to the drawing in a file of its folder, at a path.
-pub(crate) fn fitted_to(scene: &Scene, file: PathBuf, path: &Path) -> Result<(Scene, Value)> {
+/// A sheet in a space that is fitted to a drawing, which the scene names; its panels have a side
+/// (mm), or else the smallest one. Also what is said of it.
+pub(crate) fn fitted_to(
+    scene: &Scene,
+    space: Option<&SceneConfig>,
+    drawing: &OwnDrawing,
+    file: PathBuf,
+    side: Option<f64>,
+) -> Result<(Scene, Value)> {
     let target = &scene.target;
-    let (centre, height) = place_drawing(path, target.mean(), target.area())?;
+    let (centre, height) = drawing.placed(target.mean(), target.area())?;
     let target = TargetShape::Svg { file, centre, height: Some(height), rotation_deg: 0.0 };
-    let config = SceneConfig { target, ..scene.config.clone() };
-    let drawn = scene.changed(config)?;
-    let fit = fitted(&drawn)?;
+    let drawn = scene.changed(SceneConfig { target, ..scene.config.clone() })?;
+    let drawn = in_space(&drawn, space)?;
+    let fit = fitted(&drawn, side)?;
     let says = expected(&fit, drawn.material.thickness);
+    let (panels, side) = (fit.panels, fit.side);
     let scene = drawn.changed(fit.config)?;
-    let says = json!({ "target": scene.config.target, "says": says });
+    let says = json!({
+        "target": scene.config.target,
+        "says": says,
+        "panels": panels,
+        "side": side,
+        "smallest": smallest_side(&scene),
+        "traced": drawing.is_traced(),
+    });
     Ok((scene, says))
+}
+
+/// The scene before its sheet was fitted to a drawing.
+fn in_space(scene: &Scene, space: Option<&SceneConfig>) -> Result<Scene, Fault> {
+    let space = space.unwrap_or(&scene.config).clone();
+    scene.changed(SceneConfig {
+        sheet: space.sheet,
+        cells: space.cells,
+        start: space.start,
+        posture: space.posture,
+        supports: space.supports,
+        loads: space.loads,
+        drive: space.drive,
+        ..scene.config.clone()
+    })
+}
+
+impl Opened {
+    /// What panels with another side (mm) show of its target.
+    pub(crate) fn cropped(&self, side: f64) -> Result<Value> {
+        let (panels, seen) = cropped(&in_space(&self.scene, self.space.as_ref())?, side)?;
+        Ok(json!({ "panels": panels, "seen": seen }))
+    }
 }

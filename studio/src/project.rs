@@ -3,12 +3,17 @@
 //! | file | contents |
 //! |---|---|
 //! | `scene.toml` | the scene that is shown, for `kirigami design` |
-//! | `target-NAME-HASH.svg` | drawings that were dropped onto the page, with the names of their files |
+//! | `NAME-HASH.svg` | drawings that were dropped onto the page, with the names of their files; pictures traced |
 //! | `design-N/` | the run folders of the searches, from 1; the first one of an opened run is its copy |
 
 use crate::request::{Drawing, NewSheet};
 use anyhow::{Context, Result, ensure};
-use app::{new_project::NewProject, output_file};
+use app::{
+    new_project::NewProject,
+    output_file,
+    own_drawing::{OwnDrawing, THRESHOLD},
+};
+use base64::{Engine, engine::general_purpose::STANDARD};
 use design::optimise::outer_loop::Ended;
 use output::run_files::RUN_FILES;
 use scene::{
@@ -116,13 +121,15 @@ impl Project {
         output_file::write(&self.scene_file(), &(HEAD.to_owned() + &text))
     }
 
-    /// Stores a drawing; returns the name of its file.
-    pub fn keep_drawing(&self, Drawing { name, svg }: &Drawing) -> Result<PathBuf> {
-        let hash = blake3::hash(svg.as_bytes()).to_hex();
-        let (stem, kind) = name.rsplit_once('.').unwrap_or((name, "svg"));
-        let name = format!("target-{}-{}.{}", slug(stem), &hash[..6], slug(kind));
-        output_file::write(&self.folder.join(&name), svg)?;
-        Ok(name.into())
+    /// Stores a drawing; also returns how a scene names it.
+    pub fn keep_drawing(&self, drawing: &Drawing) -> Result<(OwnDrawing, PathBuf)> {
+        let Drawing { name, file, piece, threshold, .. } = drawing;
+        let contents = STANDARD.decode(file).context("the drawing is not sent in base64")?;
+        let own = OwnDrawing::new(name.into(), *piece, contents, threshold.unwrap_or(THRESHOLD))?;
+        let mark = format!("-{}", &own.hash()[..6]);
+        own.write(&self.folder, &mark)?;
+        let name = own.name(&mark);
+        Ok((own, name))
     }
 
     /// The name of the next run folder.

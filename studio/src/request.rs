@@ -19,6 +19,11 @@ pub enum Request {
     },
     /// The target is this drawing, to which the sheet is fitted.
     Drawing(Drawing),
+    /// Show which panels another side would give the sheet of a drawing.
+    Crop {
+        /// Side of the panels (mm).
+        panel_side: f64,
+    },
     /// How much of the hinges is modelled is other than before.
     Level {
         /// The level.
@@ -74,8 +79,14 @@ pub struct NewSheet {
 pub struct Drawing {
     /// The name of its file.
     pub name: String,
-    /// Text of the SVG or DXF file.
-    pub svg: String,
+    /// The SVG, DXF, PNG or JPEG file in base64.
+    pub file: String,
+    /// Which of its pieces, if it has several.
+    pub piece: Option<usize>,
+    /// The difference from the ground at which a picture is traced, relative to the largest one.
+    pub threshold: Option<f64>,
+    /// Side of the panels (mm), or else the smallest one.
+    pub panel_side: Option<f64>,
 }
 
 /// Other keys of the scene.

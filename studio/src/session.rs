@@ -13,7 +13,7 @@ use crate::{
 };
 use analysis::levels::levels;
 use analysis::refinement::inverse_design;
-use anyhow::{Context, Result, anyhow, ensure};
+use anyhow::{Context, Result, bail, ensure};
 use app::{
     cut::{machine_file_of_run, tiles_of_run},
     design::write_run,
@@ -85,6 +85,7 @@ impl Session {
             before: Vec::new(),
             after: Vec::new(),
             by: None,
+            space: None,
             known: None,
             runs: run.into_iter().collect(),
             project,
@@ -128,6 +129,9 @@ impl Session {
                 self.draft(changed, None)?;
             }
             Request::Drawing(drawing) => self.drawing(&drawing)?,
+            Request::Crop { panel_side } => {
+                self.tell(Kind::Crop, &self.opened()?.cropped(panel_side)?);
+            }
             Request::Level { level } => {
                 let other = self.opened()?.scene.at_level(level)?;
                 self.draft(other, None)?;
@@ -150,22 +154,28 @@ impl Session {
         if begun.is_err() {
             project.remove();
         }
-        let (scene, fit) = begun?;
+        let (space, scene, fit) = begun?;
         self.open(project, scene);
+        self.opened_mut()?.space = Some(space);
         if let Some(fit) = fit {
             self.tell(Kind::Fit, &fit);
         }
         Ok(())
     }
 
-    /// A new sheet, and what is said of its fit if it is for a drawing.
-    fn new_sheet(&self, project: &Project, sheet: &NewSheet) -> Result<(Scene, Option<Value>)> {
+    /// The space of a new sheet, the sheet, and what is said of its fit if it is for a drawing.
+    fn new_sheet(
+        &self,
+        project: &Project,
+        sheet: &NewSheet,
+    ) -> Result<(SceneConfig, Scene, Option<Value>)> {
         let scene = project.begin(sheet)?;
+        let space = scene.config.clone();
         let Some(drawing) = &sheet.drawing else {
-            return Ok((scene, None));
+            return Ok((space, scene, None));
         };
-        let (scene, says) = self.fitted(project, &scene, drawing)?;
-        Ok((scene, Some(says)))
+        let (scene, says) = self.fitted(project, &scene, None, drawing)?;
+        Ok((space, scene, Some(says)))
     }
 
     /// Writes the scene, and lets the full analysis be computed.
@@ -195,9 +205,12 @@ impl Session {
     }
 
     fn drawing(&mut self, drawing: &Drawing) -> Result<()> {
-        let Opened { project, scene, .. } = self.opened()?;
-        let (scene, says) = self.fitted(project, scene, drawing)?;
+        let Opened { project, scene, space, .. } = self.opened()?;
+        let uncut = scene.config.cells.is_none().then(|| scene.config.clone());
+        let space = uncut.or_else(|| space.clone());
+        let (scene, says) = self.fitted(project, scene, space.as_ref(), drawing)?;
         self.draft(scene, None)?;
+        self.opened_mut()?.space = space;
         self.tell(Kind::Fit, &says);
         Ok(())
     }
@@ -207,16 +220,21 @@ impl Session {
         &self,
         project: &Project,
         scene: &Scene,
+        space: Option<&SceneConfig>,
         drawing: &Drawing,
     ) -> Result<(Scene, Value)> {
         self.tell(Kind::Working, &"fit");
-        let file = project.keep_drawing(drawing)?;
-        let path = project.folder.join(&file);
-        let fitted = fitted_to(scene, file, &path);
-        // A person knows the drawing by the name that it had.
-        fitted.map_err(|error| {
-            anyhow!(message(&error).replace(&*path.to_string_lossy(), &drawing.name))
-        })
+        let (own, name) = project.keep_drawing(drawing)?;
+        let pieces = own.pieces()?;
+        if drawing.piece.is_none() && pieces.len() > 1 {
+            self.tell(Kind::Pieces, &pieces);
+            bail!(
+                "{} has {} pieces: click the one that is to be a sheet",
+                drawing.name,
+                pieces.len()
+            );
+        }
+        fitted_to(scene, space, &own, name, drawing.panel_side)
     }
 
     /// Measures the levels of the sheet that is shown.

@@ -68,38 +68,6 @@ fn a_ring_becomes_a_sheet_with_a_hole() {
     assert!(middle.trim_matches('.').contains('.'), "{voids}");
 }
 
-/// A scene of any target is fitted before its search; its run has what was chosen, and is designed
-/// again without a fit.
-#[test]
-fn a_scene_is_fitted_to_its_target() {
-    let work = Workplace::new();
-    work.output(&format!("init plain --thickness 2 --size {SIDE}x{SIDE}"));
-    work.output("design plain/scene.toml --fit --steps 2");
-    let run = work.path("plain/design");
-    let chosen = std::fs::read_to_string(run.join("scene.toml")).unwrap();
-    assert!(chosen.contains("corners") && chosen.contains("[target.rectangle]"));
-    let report = std::fs::read(run.join("report.json")).unwrap();
-    work.output(&format!("design {} --out again", run.display()));
-    let again = std::fs::read(work.path("again/report.json")).unwrap();
-    let loss = |report: &[u8]| {
-        let report: Value = serde_json::from_slice(report).unwrap();
-        report["after"]["loss"].as_f64().unwrap()
-    };
-    assert_eq!(loss(&again), loss(&report));
-}
-
-/// A sheet of springs is fitted too; one of pins is refused, since its search is the fit.
-#[test]
-fn a_fit_needs_hinges_that_carry_loads() {
-    let work = Workplace::new();
-    work.refuses(
-        "-q design configs/scenes/pin-7x7.toml --fit --out pins",
-        &["its search is on pins already"],
-    );
-    work.output("design configs/scenes/linear-7x7.toml --fit --steps 1 --force --out springs");
-    assert!(work.path("springs/report.json").exists());
-}
-
 /// The fit does not depend on chance or on the number of cores: the same command writes the same
 /// scene.
 #[test]

@@ -321,6 +321,41 @@ fn a_silhouette_becomes_a_cut_file_without_another_control() {
     at_rest(&mut tab);
     assert_eq!(tab.value(&format!("{says}.hidden")), json!(false));
     assert_eq!(scene_on_disk(&work.path("studio/leaf")), scene);
+    // A click on one of its pieces takes that.
+    after(&mut tab, |tab| tab.click("#pieces path:nth-of-type(2)"));
+    assert!(scene_on_disk(&work.path("studio/leaf")).contains(".svg#2\""));
+    picture_under_sliders(&mut tab, &studio, &work);
+}
+
+/// A picture of the leaf is traced. A slider shows at once which panels another side gives, and the
+/// sheet has them when it stops.
+fn picture_under_sliders(tab: &mut Tab, studio: &Studio, work: &Workplace) {
+    let leaf = Path::new(env!("CARGO_MANIFEST_DIR")).join("configs/targets/leaf.svg");
+    tab.go(&format!("file://{}", leaf.display()));
+    let picture = work.path("snapshot.png");
+    std::fs::write(&picture, tab.picture()).unwrap();
+    reload(tab, studio);
+    after(tab, |tab| tab.drop_file(picture.to_str().unwrap(), "#stage"));
+    let folder = work.path("studio/leaf");
+    assert!(scene_on_disk(&folder).contains("file = \"snapshot-"));
+    let panels = tab.value("fit.panels").as_u64().unwrap();
+    let fire = |tab: &mut Tab, id: &str, value: f64, event: &str| {
+        tab.value(&format!(
+            "(() => {{ const slider = document.getElementById('{id}'); slider.value = {value}; slider.dispatchEvent(new Event('{event}')); }})()"
+        ));
+    };
+    let side = 1.5 * tab.value("fit.smallest").as_f64().unwrap();
+    fire(tab, "fit-panel_side", side, "input");
+    tab.wait(
+        "crop !== null && document.getElementById('fit').textContent.includes('panels show about')",
+    );
+    let shown = tab.value("crop.panels.length").as_u64().unwrap();
+    assert!(shown < panels, "{shown} of {panels}");
+    after(tab, |tab| fire(tab, "fit-panel_side", side, "change"));
+    assert!(tab.value("fit.panels").as_u64().unwrap() < panels);
+    after(tab, |tab| fire(tab, "fit-threshold", 0.9, "change"));
+    assert_eq!(tab.value("fit.side").as_f64(), Some(side));
+    assert_no_error(tab);
 }
 
 #[test]

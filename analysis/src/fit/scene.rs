@@ -2,14 +2,14 @@
 //! fastened at the places of its opening.
 
 use crate::fit::even_pattern::Opening;
-use crate::fit::even_sheet::{EvenSheet, THOROUGH, growth};
+use crate::fit::even_sheet::{EvenSheet, QUICK, Search, THOROUGH, growth};
 use crate::fit::fasteners::{AT_MOST, Candidates, FIRST, HOLES, Held};
 use crate::fit::lost::{Lost, kept_by, lost};
 use crate::fit::opening::{free_axial_opening, safe_opening};
 use crate::fit::trimmed::{Limits, TOLERANCE};
 use design::geometry::plane::{complex, point};
 use design::geometry::polygon::bounds;
-use design::geometry::region::Region;
+use design::geometry::region::{Contour, Region};
 use design::geometry::similarity::Similarity;
 use design::pattern::grid::Grid;
 use design::sheet::topology::Topology;
@@ -64,8 +64,46 @@ pub struct FittedScene {
 }
 
 /// The even sheet that opens onto the target of a scene, whose sheet stands for the space in its
-/// stock.
-pub fn fitted(scene: &Scene) -> Result<FittedScene, Fault> {
+/// stock; its panels have a side (mm), the smallest one that has room for the windows of two hinges
+/// unless a larger one is named.
+pub fn fitted(scene: &Scene, side: Option<f64>) -> Result<FittedScene, Fault> {
+    let side = side.unwrap_or(smallest_side(scene));
+    let sheet = even_sheet(scene, side, THOROUGH)?;
+    let topology = sheet.topology();
+    let lost = lost(&sheet);
+    let target = scene.target.region();
+    let size = sheet.size(&target);
+    let kept_by = lost.first().and_then(|_| kept_by(&target, size, sheet.limits));
+    let (config, held) = fasten(scene, &sheet, &topology, side);
+    Ok(FittedScene {
+        config,
+        held,
+        lost,
+        kept_by,
+        panels: topology.panel_count(),
+        side,
+        opening: sheet.limits.opening.angle,
+        seen: sheet.seen,
+    })
+}
+
+/// The outlines of the opened panels over the target (mm) that a short search finds, and how much of
+/// the target one sees.
+pub fn cropped(scene: &Scene, side: f64) -> Result<(Vec<Contour>, f64), Fault> {
+    let sheet = even_sheet(scene, side, QUICK)?;
+    let back = |at: &[f64; 2]| point(sheet.place.back(complex(*at)));
+    let panels = sheet.opened(1.0);
+    let panels = panels.iter().map(|panel| panel.iter().map(back).collect()).collect();
+    Ok((panels, sheet.seen))
+}
+
+/// The smallest side of a panel that has room for the windows of two hinges (mm).
+pub fn smallest_side(scene: &Scene) -> f64 {
+    SIDE * scene.config.process.r_win
+}
+
+/// The sheet of the target of a scene that a search finds.
+fn even_sheet(scene: &Scene, side: f64, search: Search) -> Result<EvenSheet, Fault> {
     if scene.config.level == Level::Pin {
         refuse!(
             "the sheet has pins (level = \"pin\"): its search is on pins already; a fit is for a sheet with a hinge law"
@@ -73,7 +111,12 @@ pub fn fitted(scene: &Scene) -> Result<FittedScene, Fault> {
     }
     let angle = opening(scene);
     let process = scene.config.process;
-    let side = SIDE * process.r_win;
+    let smallest = smallest_side(scene);
+    if side < smallest {
+        refuse!(
+            "panels of {side} mm are too small: the windows of two hinges, and a margin, need {smallest} mm"
+        );
+    }
     let space = Region::union_of(vec![scene.config.sheet.outline().corners.to_vec()]);
     let limits = Limits {
         stock: space.extent().map(|length| length / side),
@@ -84,26 +127,10 @@ pub fn fitted(scene: &Scene) -> Result<FittedScene, Fault> {
         gap: f64::max(GAP, process.slit_width / side),
         slit: process.slit_width / side,
     };
-    let target = scene.target.region();
-    let sheet = largest(&target, limits).ok_or_else(|| {
+    largest(&scene.target.region(), limits, search).ok_or_else(|| {
         fault!(
             "the target is nowhere as wide as two panels of {side:.0} mm: use a larger sheet (--size, --stock) or a thinner one (--thickness)"
         )
-    })?;
-    let topology = sheet.topology();
-    let lost = lost(&sheet);
-    let size = sheet.size(&target);
-    let kept_by = lost.first().and_then(|_| kept_by(&target, size, limits));
-    let (config, held) = fasten(scene, &sheet, &topology, side);
-    Ok(FittedScene {
-        config,
-        held,
-        lost,
-        kept_by,
-        panels: topology.panel_count(),
-        side,
-        opening: angle,
-        seen: sheet.seen,
     })
 }
 
@@ -120,10 +147,10 @@ fn to_tip(scene: &Scene) -> f64 {
 }
 
 /// The largest hole for a screw (mm) that leaves the windows of the hinges around the middle of a
-/// panel.
-fn hole(scene: &Scene) -> f64 {
+/// panel of some side (mm).
+fn hole(scene: &Scene, side: f64) -> f64 {
     let r_win = scene.config.process.r_win;
-    let half = 0.5 * SIDE * r_win;
+    let half = 0.5 * side;
     let tip = half.hypot(half - to_tip(scene));
     let fits = |hole: &f64| r_win + 0.5 * hole < tip;
     HOLES.into_iter().find(fits).unwrap_or(HOLES[HOLES.len() - 1])
@@ -148,10 +175,10 @@ fn set_back(scene: &Scene, angle: f64) -> f64 {
 
 /// The sheet of a drawing that is as large as its stock allows. What is seen of the drawing comes
 /// before the last percents of its size.
-fn largest(target: &Region, limits: Limits) -> Option<EvenSheet> {
+fn largest(target: &Region, limits: Limits, search: Search) -> Option<EvenSheet> {
     let size = growth(target.extent(), limits.stock) * target.longer_side();
     LARGEST.into_iter().find_map(|part| {
-        EvenSheet::new(target, &SIZES.map(|factor| factor * part * size), limits, THOROUGH)
+        EvenSheet::new(target, &SIZES.map(|factor| factor * part * size), limits, search)
     })
 }
 
@@ -207,6 +234,8 @@ fn fasten(
 /// in mm, its lower left corner at the origin.
 struct LaidSheet<'a> {
     topology: &'a Topology,
+    /// Side of a panel (mm).
+    side: f64,
     grid: Grid,
     /// The first cell of the grid.
     first: c64,
@@ -229,7 +258,7 @@ impl<'a> LaidSheet<'a> {
         let turned = |at: &[f64; 2]| point(back * (complex(*at) - first));
         let low = complex(bounds(flat.iter().flatten().map(turned))[0]);
         let opened = sheet.limits.opening.pitch() - 1.0;
-        let mut laid = Self { topology, grid, first, back, low, middle: c64::ZERO, opened };
+        let mut laid = Self { topology, side, grid, first, back, low, middle: c64::ZERO, opened };
         let count = topology.panel_count();
         laid.middle = (0..count).map(|panel| laid.centre(panel)).sum::<c64>() / count as f64;
         laid
@@ -273,7 +302,7 @@ impl<'a> LaidSheet<'a> {
         config.start = StartConfig::default();
         config.clear_actuation();
         let [flat, even] = [0.0, self.opened].map(|opened| self.middles(opened));
-        let hole = Some(hole(scene));
+        let hole = Some(hole(scene, self.side));
         let fastener = |panel: &usize| {
             let at = flat[*panel].map(rounded);
             SupportConfig {

@@ -13,17 +13,17 @@
 //! deployment.
 
 use crate::{
-    input_file,
     new_project::{
         cut_from::CutFrom,
         edited::{heading, map, scale, set},
         template::Template,
     },
+    own_drawing::OwnDrawing,
 };
 use analysis::fit::scene::SIDE;
 use anyhow::{Context, Result};
 use hinge::{MIN_W_LIG, Regime};
-use scene::{CuttingConfig, Paper, drawing::drawn_outline::numbered, place_drawing, rounded};
+use scene::{CuttingConfig, Paper, rounded};
 use std::path::Path;
 use support::relative_path;
 use toml_edit::{Array, DocumentMut, Item, Table, value};
@@ -133,7 +133,7 @@ impl FirstScene {
         &self,
         folder: &Path,
         weights: &Path,
-        drawing: Option<&Path>,
+        drawing: Option<&OwnDrawing>,
     ) -> Result<String> {
         let named = |file: &Path| -> Result<String> {
             Ok(relative_path::from_folder(folder, file)?.display().to_string())
@@ -189,7 +189,7 @@ impl FirstScene {
             set(&mut scene["posture"]["down"], Array::from_iter(pull));
         }
         if let Some(drawing) = drawing {
-            scene["target"] = placed(drawing, named(drawing)?, centre, size[0] * size[1])?;
+            scene["target"] = placed(drawing, centre, size[0] * size[1])?;
             return Ok(scene.to_string());
         }
         if let Some(range) = scene["ligament"]["range"].as_array_mut()
@@ -267,12 +267,11 @@ fn name_weights(
     Ok(())
 }
 
-/// The table `[target]` of a drawing, `named` by the scene, centred at `centre` (mm) and the given area (mm^2).
-fn placed(drawing: &Path, named: String, centre: [f64; 2], area: f64) -> Result<Item> {
-    input_file::require(&numbered(drawing).0, "--target")?;
-    let (centre, height) = place_drawing(drawing, centre, area)?;
+/// The table `[target]` of a drawing, centred at `centre` (mm) and the given area (mm^2).
+fn placed(drawing: &OwnDrawing, centre: [f64; 2], area: f64) -> Result<Item> {
+    let (centre, height) = drawing.placed(centre, area)?;
     let mut svg = Table::new();
-    svg["file"] = value(named);
+    svg["file"] = value(drawing.name("").display().to_string());
     svg["centre"] = value(Array::from_iter(centre));
     svg["height"] = value(height);
     svg.decor_mut().set_prefix(

@@ -10,8 +10,13 @@ use scene::{Scene, SceneConfig, TargetShape};
 use toml_edit::{Array, DocumentMut, Item, value};
 
 /// The text of the scene of a first sheet, fitted to its target, and what is expected of it.
-pub(super) fn fitted_text(scene: &Scene, text: &str, anyway: bool) -> Result<(String, String)> {
-    let (fit, expected) = fit_to_target(scene, anyway)?;
+pub(super) fn fitted_text(
+    scene: &Scene,
+    text: &str,
+    side: Option<f64>,
+    anyway: bool,
+) -> Result<(String, String)> {
+    let (fit, expected) = fit_to_target(scene, side, anyway)?;
     let mut document: DocumentMut = text.parse().context("the first scene is valid TOML")?;
     heading(
         &mut document,

@@ -53,93 +53,126 @@ pub fn numbered(name: &Path) -> (PathBuf, Option<usize>) {
 
 /// The outline in the bytes of a drawing; if it has several, the one with the given number.
 pub(crate) fn of_file(bytes: &[u8], number: Option<usize>) -> Result<Outline, Fault> {
-    if bytes.starts_with(GZIP) {
-        let svg = usvg::decompress_svgz(bytes).map_err(svg_path::not_svg)?;
-        return of_text(&decoded(&svg)?, number);
-    }
-    of_text(&decoded(bytes)?, number)
+    of_text(&text_of(bytes)?, number)
 }
 
-fn decoded(bytes: &[u8]) -> Result<String, Fault> {
-    text_file::decoded(bytes).map_err(at("the file is no drawing"))
+/// The pieces of a drawing, the largest first: the number of each, and its vertices, y upwards.
+pub fn pieces(bytes: &[u8]) -> Result<Vec<(usize, Vec<[f64; 2]>)>, Fault> {
+    let drawn = Drawn::read(&text_of(bytes)?)?;
+    let upright = |piece: usize| {
+        let points = drawn.contours[piece].points.iter();
+        (piece + 1, points.map(|at| drawn.upright(*at)).collect())
+    };
+    Ok(drawn.pieces().into_iter().map(upright).collect())
+}
+
+fn text_of(bytes: &[u8]) -> Result<String, Fault> {
+    let decoded = |bytes: &[u8]| text_file::decoded(bytes).map_err(at("the file is no drawing"));
+    match bytes.starts_with(GZIP) {
+        true => decoded(&usvg::decompress_svgz(bytes).map_err(svg_path::not_svg)?),
+        false => decoded(bytes),
+    }
 }
 
 pub(super) fn of_text(text: &str, number: Option<usize>) -> Result<Outline, Fault> {
-    let first = text.lines().find(|line| !line.trim().is_empty());
-    let Some(first) = first.map(str::trim) else {
-        refuse!("the file is empty; draw one closed outline and save it as SVG or DXF");
+    let mut drawn = Drawn::read(text)?;
+    let chosen = drawn.chosen(number)?;
+    let gap = drawn.contours[chosen].check()?;
+    let (holes, left_out) = holes::of(chosen, &drawn.contours, &drawn.around)?;
+    let mut points = |contour: usize| -> Vec<[f64; 2]> {
+        let points = std::mem::take(&mut drawn.contours[contour].points);
+        points.into_iter().map(|at| drawn.upright(at)).collect()
     };
-    // Group code 0 begins a section, 999 is a comment.
-    if ["0", "999"].contains(&first) {
-        let (contours, has_unit) = dxf_contours::read(text)?;
-        return outline(contours, number, has_unit);
-    }
-    if !first.starts_with('<') {
-        let known = OTHERS.iter().find(|(start, _)| first.starts_with(start));
-        let start: String = first.chars().take(20).collect();
-        let what = known.map_or("no drawing that is read", |(_, what)| what);
-        refuse!(
-            "the file begins with `{}`: it is {what}; export the drawing as SVG or DXF",
-            start.escape_debug()
-        );
-    }
-    let (contours, warnings) = svg_path::contours(text)?;
-    let mut outline = outline(contours, number, false)?;
-    let all = outline.holes.iter_mut().chain([&mut outline.vertices]).flatten();
-    all.for_each(|vertex| vertex[1] = -vertex[1]);
-    outline.warnings.splice(..0, warnings);
-    Ok(outline)
-}
-
-fn outline(
-    contours: Vec<Contour>,
-    number: Option<usize>,
-    has_unit: bool,
-) -> Result<Outline, Fault> {
-    let mut contours = joined(contours);
-    let area = |contour: &Contour| {
-        let [width, height] = contour.size();
-        width * height
-    };
-    contours.sort_by(|a, b| area(b).total_cmp(&area(a)));
-    let around = holes::around(&contours);
-    let chosen = chosen(&contours, &around, number)?;
-    let gap = contours[chosen].check()?;
-    let (holes, warnings) = holes::of(chosen, &contours, &around)?;
-    let mut points = |contour: usize| std::mem::take(&mut contours[contour].points);
     let vertices = points(chosen);
     let holes = holes.into_iter().map(points).collect();
-    Ok(Outline { vertices, holes, gap, has_unit, warnings })
+    let warnings = drawn.warnings.into_iter().chain(left_out).collect();
+    Ok(Outline { vertices, holes, gap, has_unit: drawn.has_unit, warnings })
 }
 
-/// The contour with a number; without one the only piece of the drawing.
-fn chosen(
-    contours: &[Contour],
-    around: &[Vec<usize>],
-    number: Option<usize>,
-) -> Result<usize, Fault> {
-    let found = contours.len();
-    let pieces: Vec<usize> = (0..found).filter(|i| around[*i].is_empty()).collect();
-    match (number, &pieces[..]) {
-        (_, []) => Err(svg_path::no_path("")),
-        (None, [piece]) => Ok(*piece),
-        (None, _) => {
-            let branch = contours.iter().find(|contour| contour.branches);
-            if let Some(branch) = branch.filter(|_| !contours.iter().any(Contour::is_whole)) {
-                branch.check()?;
-            }
+/// The contours of a drawing.
+struct Drawn {
+    /// The largest first.
+    contours: Vec<Contour>,
+    /// For each those before it that it lies in.
+    around: Vec<Vec<usize>>,
+    /// Whether their points are in mm.
+    has_unit: bool,
+    /// Whether y is downwards.
+    downwards: bool,
+    /// What could not be read.
+    warnings: Vec<String>,
+}
+
+impl Drawn {
+    fn read(text: &str) -> Result<Self, Fault> {
+        let first = text.lines().find(|line| !line.trim().is_empty());
+        let Some(first) = first.map(str::trim) else {
+            refuse!("the file is empty; draw one closed outline and save it as SVG or DXF");
+        };
+        // Group code 0 begins a section, 999 is a comment.
+        let is_dxf = ["0", "999"].contains(&first);
+        if !is_dxf && !first.starts_with('<') {
+            let known = OTHERS.iter().find(|(start, _)| first.starts_with(start));
+            let start: String = first.chars().take(20).collect();
+            let what = known.map_or("no drawing that is read", |(_, what)| what);
             refuse!(
-                "the drawing has {} pieces, by size {}; a sheet is one of them: delete the others, or write the number of one \
-                 behind the name of the file, as in `drawing.svg#1`, which takes it with its holes",
-                pieces.len(),
-                listed(pieces.iter().map(|piece| (*piece, &contours[*piece])))
-            )
+                "the file begins with `{}`: it is {what}; export the drawing as SVG or DXF",
+                start.escape_debug()
+            );
         }
-        (Some(number), _) if number == 0 || number > found => refuse!(
-            "there is no contour {number}: the drawing has {found}, by size {}",
-            listed(contours.iter().enumerate())
-        ),
-        (Some(number), _) => Ok(number - 1),
+        let (contours, has_unit, warnings) = if is_dxf {
+            let (contours, has_unit) = dxf_contours::read(text)?;
+            (contours, has_unit, Vec::new())
+        } else {
+            let (contours, warnings) = svg_path::contours(text)?;
+            (contours, false, warnings)
+        };
+        let mut contours = joined(contours);
+        let area = |contour: &Contour| {
+            let [width, height] = contour.size();
+            width * height
+        };
+        contours.sort_by(|a, b| area(b).total_cmp(&area(a)));
+        let around = holes::around(&contours);
+        Ok(Self { contours, around, has_unit, downwards: !is_dxf, warnings })
+    }
+
+    /// A point with y upwards.
+    fn upright(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+        [x, if self.downwards { -y } else { y }]
+    }
+
+    /// The contours that lie in no other one.
+    fn pieces(&self) -> Vec<usize> {
+        (0..self.contours.len()).filter(|i| self.around[*i].is_empty()).collect()
+    }
+
+    /// The contour with a number; without one the only piece of the drawing.
+    fn chosen(&self, number: Option<usize>) -> Result<usize, Fault> {
+        let contours = &self.contours;
+        let found = contours.len();
+        let pieces = self.pieces();
+        match (number, &pieces[..]) {
+            (_, []) => Err(svg_path::no_path("")),
+            (None, [piece]) => Ok(*piece),
+            (None, _) => {
+                let branch = contours.iter().find(|contour| contour.branches);
+                if let Some(branch) = branch.filter(|_| !contours.iter().any(Contour::is_whole)) {
+                    branch.check()?;
+                }
+                refuse!(
+                    "the drawing has {} pieces, by size {}; a sheet is one of them: delete the others, or write the number of one \
+                     behind the name of the file, as in `drawing.svg#1`, which takes it with its holes",
+                    pieces.len(),
+                    listed(pieces.iter().map(|piece| (*piece, &contours[*piece])))
+                )
+            }
+            (Some(number), _) if number == 0 || number > found => refuse!(
+                "there is no contour {number}: the drawing has {found}, by size {}",
+                listed(contours.iter().enumerate())
+            ),
+            (Some(number), _) => Ok(number - 1),
+        }
     }
 }
 

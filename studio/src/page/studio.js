@@ -66,6 +66,7 @@ connect({
   },
 
   draft(event) {
+    crop = null;
     times.draft = event.ms;
     times.recent = [...times.recent, performance.now()].filter((t) => t > performance.now() - 1000);
     sayTimes();
@@ -137,9 +138,20 @@ connect({
     if (!refused && message) byId("progress").textContent = message;
   },
 
-  fit({ target, says }) {
-    fit = { target: JSON.stringify(target), says };
+  pieces(pieces) {
+    if (dropped) writePieces(pieces);
+  },
+
+  crop(shows) {
+    crop = shows;
+    byId("fit").textContent = `${crop.panels.length} panels show about ${shown(100 * crop.seen, 3)} % of the target`;
+    layOut(false);
+  },
+
+  fit(expected) {
+    fit = { ...expected, target: JSON.stringify(expected.target) };
     sayFit();
+    writeFields();
     taken = false;
   },
 
@@ -300,7 +312,7 @@ function begin(drawing = null) {
   if ((width === null) !== (height === null) || (chosen === "own" && !size)) return refuseNew("Give both width and height, or neither.");
   refuse("");
   const name = byId("new-name");
-  const named = drawing && name.value === name.defaultValue ? drawing.name.replace(/\.(svg|dxf)$/i, "") : name.value;
+  const named = drawing && name.value === name.defaultValue ? drawing.name.replace(/\.(svg|dxf|png|jpe?g)$/i, "") : name.value;
   const stock = chosen === "own" ? size : chosen;
   if (service) byId("machine").value = shop.services.find(([name]) => name === service)[1];
   ask({ do: "new", name: named, material, thickness, size: stock ? null : size, stock, margin: stock && margin, kerf, service, drawing });

@@ -53,13 +53,14 @@ function writeTarget(box) {
     button(line, "Fewer points", () => morePoints(0.5), "Half as many points");
     write(box, "p", `${target.points.length} points. Drag them, or Tab to one and move it with the arrows (Shift: by 10 mm).`, "note");
   }
-  const label = write(box, "label", "Drawing (SVG, DXF)");
-  label.title = "An SVG or DXF file with one closed outline";
+  const label = write(box, "label", "Drawing or picture");
+  label.title = "An SVG or DXF file with one closed outline, or a PNG or JPEG, which is traced";
   const file = document.createElement("input");
-  Object.assign(file, { type: "file", accept: ".svg,.dxf,image/svg+xml", id: "drawing" });
+  Object.assign(file, { type: "file", accept: ".svg,.dxf,.png,.jpg,.jpeg", id: "drawing" });
   file.addEventListener("change", () => takeDrawing(file.files[0]));
   label.appendChild(file);
   write(box, "p", "Or drop one anywhere: an outline with its holes, which becomes a sheet of an even pattern.", "note");
+  writeFitSliders(box);
 }
 
 function morePoints(factor) {
@@ -78,11 +79,71 @@ async function takeDrawing(file) {
   sayAtSheet("");
   if (busy) return sayAtSheet(`${file.name} was not taken: something else is under way. Pause it, or drop the file again later.`);
   if (file.size > MOST_BYTES) return sayAtSheet(`${file.name} has ${Math.round(file.size / 1e6)} MB: simplify the drawing to 8 MB at most`);
-  const drawing = { name: file.name, svg: await file.text() };
-  taken = true;
-  if (byId("tools").hidden) begin(drawing);
-  else ask({ do: "drawing", ...drawing });
+  dropped = { name: file.name, file: await inBase64(file) };
+  sendDrawing();
 }
+
+/** Sends the drawing that was taken, for a new sheet while the form of one is shown. */
+function sendDrawing() {
+  byId("pieces").toggleAttribute("hidden", true);
+  taken = true;
+  if (byId("tools").hidden) begin(dropped);
+  else ask({ do: "drawing", ...dropped });
+}
+
+/** Draws the pieces of a drawing: a click, or Enter, takes one. */
+function writePieces(pieces) {
+  const box = byId("pieces");
+  box.textContent = "";
+  const points = pieces.flatMap(([, points]) => points);
+  const [low, high] = [Math.min, Math.max].map((most) => [0, 1].map((c) => points.map((p) => p[c]).reduce((a, b) => most(a, b))));
+  box.setAttribute("viewBox", [low[0], -high[1], high[0] - low[0], high[1] - low[1]].join(" "));
+  for (const [piece, outline] of pieces) {
+    const d = `M${outline.map(([x, y]) => `${x} ${-y}`).join("L")}Z`;
+    const path = draw(box, "path", { d, tabindex: 0, role: "button", "aria-label": `piece ${piece}` });
+    const take = () => { dropped.piece = piece; refuse(""); sendDrawing(); };
+    path.addEventListener("click", take);
+    path.addEventListener("keydown", ({ key }) => { if (key === "Enter") take(); });
+  }
+  box.removeAttribute("hidden");
+  if (byId("tools").hidden) byId("refusal").after(box);
+  else stage.before(box);
+  box.scrollIntoView({ block: "nearest" });
+}
+
+/** The drawing that was taken last, as it was sent. */
+let dropped = null;
+
+const inBase64 = (file) => new Promise((done) => {
+  const reader = new FileReader();
+  reader.addEventListener("load", () => done(reader.result.split(",")[1] ?? ""));
+  reader.readAsDataURL(file);
+});
+
+/** Sliders of the fit to the drawing that was taken: the side of the panels, and the line at which a picture is traced. */
+function writeFitSliders(box) {
+  if (!dropped || fit.side === undefined) return;
+  const slider = (text, title, key, range, value, move) => {
+    const label = Object.assign(write(box, "label", text(value)), { title });
+    const input = Object.assign(document.createElement("input"), { type: "range", ...range, id: `fit-${key}` });
+    input.value = value;
+    input.addEventListener("input", () => { label.firstChild.textContent = text(input.valueAsNumber); move(input.valueAsNumber); });
+    input.addEventListener("change", () => {
+      dropped[key] = input.valueAsNumber;
+      sendDrawing();
+    });
+    label.appendChild(input);
+  };
+  const { smallest, side, traced } = fit;
+  slider((mm) => `Side of the panels: ${shown(mm, 3)} mm`, "Larger panels are fewer, and show less of the drawing", "panel_side", { min: smallest, max: 3 * smallest, step: smallest / 50 }, side, (panel_side) => ask({ do: "crop", panel_side }));
+  if (traced) slider((part) => `Traced at ${Math.round(100 * part)} % of the contrast`, "The outline of the picture: from the colour of its border to the most different one", "threshold", { min: 0.05, max: 0.95, step: 0.05 }, dropped.threshold ?? 0.5, () => {});
+}
+
+/** The panels that a side under the slider gives, over the target, and how much of it they show. */
+let crop = null;
+overlays.push(() => {
+  for (const panel of crop?.panels ?? []) draw(marks, "path", { d: outlinePath(panel), fill: "none", stroke: TEAL, "stroke-width": 1.2 });
+});
 
 /** Whether a drawing was taken of which nothing is known yet. */
 let taken = false;
