@@ -13,7 +13,7 @@ use image::{
     guess_format,
 };
 use scene::{
-    drawing::drawn_outline::{numbered, pieces},
+    drawing::drawn_outline::{NumberedPiece, numbered, pieces},
     target::Target,
 };
 use std::{
@@ -79,8 +79,8 @@ impl OwnDrawing {
         Ok(Self { origin, number, contents, traced })
     }
 
-    /// Its pieces, the largest first: the number of each, and its vertices, y upwards.
-    pub fn pieces(&self) -> Result<Vec<(usize, Vec<[f64; 2]>)>> {
+    /// Its pieces, the largest first.
+    pub fn pieces(&self) -> Result<Vec<NumberedPiece>> {
         Ok(pieces(&self.contents).map_err(at(self.origin.display()))?)
     }
 

@@ -68,6 +68,17 @@ fn a_ring_becomes_a_sheet_with_a_hole() {
     assert!(middle.trim_matches('.').contains('.'), "{voids}");
 }
 
+/// An even pattern needs no search: one that shows less of the drawing is a warning.
+#[test]
+fn a_search_after_which_less_is_seen_is_a_warning() {
+    let work = Workplace::new();
+    work.output("init star --target configs/targets/star.svg --thickness 2 --size 180x180");
+    work.prints(
+        "design star/scene.toml --level draft --steps 10",
+        &["warning: after the search 94.", "% of the target is seen, before it 95"],
+    );
+}
+
 /// The fit does not depend on chance or on the number of cores: the same command writes the same
 /// scene.
 #[test]

@@ -67,7 +67,7 @@ fn an_array_is_not_submitted_twice() {
     // The accounting learns of a job late: its silence is no evidence.
     slurm.script("sacct", "true");
     assert_eq!(slurm.submit().1, 1);
-    let status = slurm.campaign(&format!("{CAMPAIGN}")).output();
+    let status = slurm.campaign(CAMPAIGN).output();
     let status = String::from_utf8(status.unwrap().stderr).unwrap();
     assert!(status.contains("does not say whether array 7"), "{status}");
 
@@ -176,7 +176,10 @@ fn an_array_whose_submission_was_killed_is_not_submitted_again() {
     slurm.answer("true");
     let arrays = slurm.work.path("arrays");
     let array = format!("echo x >> {}", arrays.display());
-    slurm.script("sbatch", &format!("{array}; set -- $(cat /proc/$PPID/stat); kill -9 $4 $PPID; echo 7"));
+    slurm.script(
+        "sbatch",
+        &format!("{array}; set -- $(cat /proc/$PPID/stat); kill -9 $4 $PPID; echo 7"),
+    );
     let submit = format!("{CAMPAIGN} 4 1");
     let killed = slurm.campaign(&submit).status().unwrap();
     assert_eq!(killed.code(), None);

@@ -179,6 +179,16 @@ function drawMarks(state, selected) {
 
 /** Distance of the target from the opened outline, over the longer side of the flat sheet, from which its places are marked. */
 const MISSED = 0.02;
+/** The same from panels whose outline is not known, over the side of a square with the area of a panel: the gaps between panels are as wide. */
+const GAP = 0.6;
+
+/** Distance of the target from the sheet from which its places are marked (mm). */
+function missedFrom() {
+  const area = run.outlines.flatMap((line) => line.map(([x, y], i) => x * line[(i + 1) % line.length][1] - y * line[(i + 1) % line.length][0]));
+  const panel = Math.sqrt(Math.abs(area.reduce((sum, part) => sum + part, 0)) / 2 / panelCount);
+  const [low, high] = bounds(run.outlines.flat());
+  return Math.max(MISSED * Math.max(high[0] - low[0], high[1] - low[1]), run.panels.outline.length ? 0 : GAP * panel);
+}
 /** Most places of the target whose distances are written. */
 const MOST_PLACES = 4;
 
@@ -202,8 +212,7 @@ function distanceTo(line, [x, y]) {
 function drawMissed(target, labels) {
   const outlines = outlinesDrawn();
   const stride = Math.ceil(target.length / 300);
-  const [low, high] = bounds(run.outlines.flat());
-  const least = MISSED * Math.max(high[0] - low[0], high[1] - low[1]) * view.scale;
+  const least = missedFrom() * view.scale;
   const stretches = [];
   let stretch = null;
   for (let i = 0; i < target.length; i += stride) {

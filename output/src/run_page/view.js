@@ -95,7 +95,7 @@ function writeWarnings() {
 }
 
 function legend() {
-  const parts = [`Dashed orange: target; red where the opened sheet is further from it than ${100 * MISSED} % of its longer side.`];
+  const parts = [`Dashed orange: target; red where it is further than ${shown(missedFrom(), 2)} mm from the opened sheet.`];
   if (!run.carries_load) parts.push("Pins carry no load; the sheet is centred on its target.");
   else parts.push("Fine dashes: flat sheet. Panels stay in the plane. Arrows: loads (orange) and reactions (teal) at the points where they act.", run.actuation.legend);
   parts.push("A panel has the fainter colour of its hinge with the largest value.");

@@ -56,8 +56,11 @@ pub(crate) fn of_file(bytes: &[u8], number: Option<usize>) -> Result<Outline, Fa
     of_text(&text_of(bytes)?, number)
 }
 
-/// The pieces of a drawing, the largest first: the number of each, and its vertices, y upwards.
-pub fn pieces(bytes: &[u8]) -> Result<Vec<(usize, Vec<[f64; 2]>)>, Fault> {
+/// The number of a piece of a drawing, and its vertices, y upwards.
+pub type NumberedPiece = (usize, Vec<[f64; 2]>);
+
+/// The pieces of a drawing, the largest first.
+pub fn pieces(bytes: &[u8]) -> Result<Vec<NumberedPiece>, Fault> {
     let drawn = Drawn::read(&text_of(bytes)?)?;
     let upright = |piece: usize| {
         let points = drawn.contours[piece].points.iter();

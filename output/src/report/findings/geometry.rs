@@ -22,11 +22,13 @@ use support::severity::Severity::{Error, Note, Warning};
 
 /// Mean opening of the hinges (rad) that is rounding.
 const SHUT: f64 = -1e-6;
+/// How much less of the target is seen after a search: rounding is smaller.
+const LESS: f64 = 5e-4;
 /// Distance of the outline from the target over the longer side of the flat sheet from which it is
 /// a note, a warning and an error.
 const MISSED: [f64; 3] = [0.01, 0.03, 0.2];
 
-pub(super) const RULES: [Rule; 8] = [
+pub(super) const RULES: [Rule; 9] = [
     rule(
         "target-not-recognised",
         Warning,
@@ -44,6 +46,26 @@ pub(super) const RULES: [Rule; 8] = [
                 let seen = rounded(100.0 * seen, 3);
                 found(format!("{seen} % of the target is seen: a viewer would not recognise it"))
                     .with(grave)
+            })
+        },
+    ),
+    rule(
+        "search-shows-less",
+        Warning,
+        [
+            "the search shows less of the target",
+            "the best design by its loss is a worse picture than the start",
+            "an even pattern needs no search: `--steps 0`",
+        ],
+        |of| {
+            let run = of.run.filter(|run| run.designed.search.last().step > 0)?;
+            of.scene.config.cells.as_ref()?;
+            let before = seen(of.scene, &run.designed.start.deployment);
+            (before - run.seen > LESS).then(|| {
+                let [before, after] = [before, run.seen].map(|part| rounded(100.0 * part, 3));
+                found(format!(
+                    "after the search {after} % of the target is seen, before it {before} %"
+                ))
             })
         },
     ),
