@@ -22,7 +22,7 @@ use scene::{
     run_inputs::{INPUTS, SCENE_FILE, STATE_FILE, scene_file},
 };
 use std::path::{Path, PathBuf};
-use support::{regular_file, text_file, unread};
+use support::{at, regular_file, text_file, unread};
 
 /// The first line of a scene that the studio writes. It changes no other scene.
 const HEAD: &str =
@@ -124,7 +124,7 @@ impl Project {
     /// Stores a drawing; also returns how a scene names it.
     pub fn keep_drawing(&self, drawing: &Drawing) -> Result<(OwnDrawing, PathBuf)> {
         let Drawing { name, file, piece, threshold, .. } = drawing;
-        let contents = STANDARD.decode(file).context("the drawing is not sent in base64")?;
+        let contents = STANDARD.decode(file).map_err(at("the drawing is not sent in base64"))?;
         let own = OwnDrawing::new(name.into(), *piece, contents, threshold.unwrap_or(THRESHOLD))?;
         let mark = format!("-{}", &own.hash()[..6]);
         own.write(&self.folder, &mark)?;
