@@ -7,7 +7,10 @@ use analysis::fit::{
 };
 use anyhow::{Result, ensure};
 use hinge::Regime;
-use scene::{Scene, placement::NOT_SEEN};
+use scene::{
+    FILLS_HOLES, Scene,
+    placement::{NOT_SEEN, RECOGNISED},
+};
 
 /// Makes the sheet that opens onto the target of a scene; also returns what a person may expect of
 /// it. Its panels have a side (mm), or else the smallest one that they can have. A sheet that shows too little of its target is refused unless `anyway`.
@@ -17,7 +20,9 @@ pub fn fit_to_target(
     anyway: bool,
 ) -> Result<(FittedScene, String)> {
     announce("laying an even pattern over the target, in some seconds");
-    scene.target.notes.iter().for_each(|note| announce(&format!("the drawing: {note}")));
+    // The sheet will have its holes.
+    let notes = scene.target.notes.iter().filter(|note| **note != FILLS_HOLES);
+    notes.for_each(|note| announce(&format!("the drawing: {note}")));
     let fit = fitted(scene, side)?;
     let expected = expected(&fit, scene.material.thickness);
     ensure!(
@@ -48,6 +53,9 @@ pub fn expected(fit: &FittedScene, thickness: f64) -> String {
         let or = if same { format!(", or a sheet of {thinner} mm") } else { String::new() };
         format!("a stock {factor} times as long and wide shows it{or}")
     }));
+    if (NOT_SEEN..RECOGNISED).contains(&fit.seen) {
+        lines.push("less than 90 % is seen: a viewer may not recognise it".to_owned());
+    }
     if !lost.is_empty() && kept_by.is_none() {
         lines.push("not even a stock twice as long and wide shows all of it".to_owned());
     }

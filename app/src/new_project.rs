@@ -53,6 +53,8 @@ pub struct NewProject {
     pub margin: Option<f64>,
     /// Outline that the sheet opens onto (SVG, DXF, PNG or JPEG).
     pub target: Option<PathBuf>,
+    /// Where a picture is traced: the difference from its ground over the largest one.
+    pub threshold: Option<f64>,
     /// Side of the panels of a sheet for a drawing (mm).
     pub panel_side: Option<f64>,
     /// Weights for the material.
@@ -120,7 +122,8 @@ impl NewProject {
         }
         let own = self.folder.join("weights.safetensors");
         let file = weights.map_or(&own, |weights| &weights.file);
-        let drawing = self.target.as_deref().map(OwnDrawing::read).transpose()?;
+        let drawing = self.target.as_ref().map(|file| OwnDrawing::read(file, self.threshold));
+        let drawing = drawing.transpose()?;
         let mut scene = first.text(&self.folder, file, drawing.as_ref())?;
         if let Some(weights) = weights {
             scene = weights.known_part(&scene, sheet.thickness / measured.thickness)?;
@@ -152,10 +155,11 @@ impl NewProject {
         let alone = if hangs && regime == Regime::Plate { ALONE } else { "" };
         let why = [template.why, alone].concat();
         let readme = readme(&self.folder, &why, regime, trained, WHOLE_BUILD);
-        write(README, &readme)?;
+        let text = [readme, expected].join("\n").trim_end().to_owned() + "\n";
+        write(README, &text)?;
         // An interrupted command leaves no scene that could be designed.
         write(SCENE_FILE, &scene)?;
-        Ok([readme, expected].join("\n").trim_end().to_owned())
+        Ok(text)
     }
 
     /// The text of the scene for the service and the drawing, what is expected of its sheet, and

@@ -31,6 +31,10 @@ const MODEL_VERSION: u32 = 4;
 /// What the parts of [`Scene::model_hash`] identify, in their order.
 pub(super) const MODEL_PARTS: [&str; 4] = ["version of kirigami", "material", "target", "weights"];
 
+/// What is said of a target with holes whose sheet has all cells.
+pub const FILLS_HOLES: &str =
+    "a sheet without `cells` fills its holes: `kirigami init --target` writes one with them";
+
 /// A scene with checked values, its material and its sampled target.
 #[derive(Clone, Debug)]
 pub struct Scene {
@@ -98,10 +102,7 @@ impl Scene {
         let target = Target::sample(&config.target, folder(path), TARGET_POINTS);
         let mut target = target.map_err(at(place))?;
         if !target.holes.is_empty() && config.cells.is_none() {
-            target.notes.push(
-                "a sheet without `cells` fills its holes: `kirigami init --target` writes one with them"
-                    .to_owned(),
-            );
+            target.notes.push(FILLS_HOLES.to_owned());
         }
         checks::target(&target, &config).map_err(at(place))?;
         let hinge = LoadedHinge::load(&config, &topology, &measured, path, known)?;

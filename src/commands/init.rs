@@ -2,7 +2,7 @@
 
 mod size_args;
 
-use crate::commands::init::size_args::{length, size, stock};
+use crate::commands::init::size_args::{length, part, size, stock};
 use anyhow::Result;
 use app::new_project::NewProject;
 use clap::Args;
@@ -48,6 +48,10 @@ pub struct InitCommand {
     /// panels is laid over it and trimmed to it [default: the opened sheet's rectangle]
     #[arg(long, value_name = "FILE")]
     target: Option<PathBuf>,
+    /// Where a PNG or JPEG is traced: the difference from the colour of its border, over the largest
+    /// one [default: between the colours of border and shape]
+    #[arg(long, value_name = "PART", value_parser = part, requires = "target")]
+    threshold: Option<f64>,
     /// Side of the panels (mm): larger ones are fewer, and show less of the drawing [default: the
     /// smallest that has room for its hinges, 2.25 window radii]
     #[arg(long, value_name = "MM", value_parser = length, requires = "target")]
@@ -74,6 +78,7 @@ impl InitCommand {
             stock,
             margin,
             target,
+            threshold,
             panel_side,
             anyway,
             service,
@@ -87,13 +92,14 @@ impl InitCommand {
             stock,
             margin,
             target,
+            threshold,
             panel_side,
             weights,
             service,
             any_width: false,
             anyway,
         };
-        println!("{}", project.create()?);
+        print!("{}", project.create()?);
         Ok(())
     }
 }

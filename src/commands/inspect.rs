@@ -11,9 +11,9 @@ use clap::{Args, ValueEnum};
 use output::listing;
 use scene::Level;
 
-/// Print the numbers of one stage of a design
+/// Print all numbers of one stage of a design as JSON
 ///
-/// Example: kirigami inspect equilibrium configs/scenes/linear-7x7.toml --json
+/// Example: kirigami inspect equilibrium configs/scenes/linear-7x7.toml
 #[derive(Args)]
 pub struct InspectCommand {
     /// The stage
@@ -24,9 +24,6 @@ pub struct InspectCommand {
     /// The level, instead of the scene's: how much of the hinges is modelled; see `kirigami levels`
     #[arg(long, value_name = "LEVEL", value_parser = with_unit::level_up_to(Level::Fine))]
     level: Option<Level>,
-    /// Print every number as JSON
-    #[arg(long)]
-    json: bool,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -49,6 +46,6 @@ impl InspectCommand {
             Stage::Equilibrium => listing::equilibrium(&problem, &design)?,
             Stage::Gradient => listing::gradient(&scene, &problem, &design)?,
         };
-        print_of(self.json, &name, &listing, &listing)
+        print_of(true, &name, &listing, "")
     }
 }

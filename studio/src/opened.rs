@@ -95,7 +95,7 @@ pub(crate) fn fitted_to(
         "panels": panels,
         "side": side,
         "smallest": smallest_side(&scene),
-        "traced": drawing.is_traced(),
+        "threshold": drawing.threshold(),
     });
     Ok((scene, says))
 }

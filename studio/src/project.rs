@@ -3,16 +3,12 @@
 //! | file | contents |
 //! |---|---|
 //! | `scene.toml` | the scene that is shown, for `kirigami design` |
-//! | `NAME-HASH.svg` | drawings that were dropped onto the page, with the names of their files; pictures traced |
+//! | `NAME-HASH.svg`, `.dxf` | drawings that were dropped onto the page, with the names of their files; pictures traced |
 //! | `design-N/` | the run folders of the searches, from 1; the first one of an opened run is its copy |
 
 use crate::request::{Drawing, NewSheet};
 use anyhow::{Context, Result, ensure};
-use app::{
-    new_project::NewProject,
-    output_file,
-    own_drawing::{OwnDrawing, THRESHOLD},
-};
+use app::{new_project::NewProject, output_file, own_drawing::OwnDrawing};
 use base64::{Engine, engine::general_purpose::STANDARD};
 use design::optimise::outer_loop::Ended;
 use output::run_files::RUN_FILES;
@@ -125,7 +121,7 @@ impl Project {
     pub fn keep_drawing(&self, drawing: &Drawing) -> Result<(OwnDrawing, PathBuf)> {
         let Drawing { name, file, piece, threshold, .. } = drawing;
         let contents = STANDARD.decode(file).map_err(at("the drawing is not sent in base64"))?;
-        let own = OwnDrawing::new(name.into(), *piece, contents, threshold.unwrap_or(THRESHOLD))?;
+        let own = OwnDrawing::new(name.into(), *piece, contents, *threshold)?;
         let mark = format!("-{}", &own.hash()[..6]);
         own.write(&self.folder, &mark)?;
         let name = own.name(&mark);

@@ -16,13 +16,19 @@ const OTHERS: [(&[u8], &str); 12] = [
     (b"AutoCAD Binary DXF", "a binary DXF file: save it as text"),
     (b"%PDF", "a PDF document: export its contents as text, and a drawing as SVG"),
     (b"%!PS", "PostScript (EPS): open it in Inkscape or Illustrator, and save it as SVG"),
-    (b"\x89PNG", "a picture (PNG): trace it (Inkscape: Path, Trace Bitmap), and save it as SVG"),
+    (b"\x89PNG", "a picture (PNG): `init --target` traces it, or trace it and save it as SVG"),
     (
         b"\xFF\xD8\xFF",
-        "a picture (JPEG): trace it (Inkscape: Path, Trace Bitmap), and save it as SVG",
+        "a picture (JPEG): `init --target` traces it, or trace it and save it as SVG",
     ),
-    (b"GIF8", "a picture (GIF): trace it (Inkscape: Path, Trace Bitmap), and save it as SVG"),
-    (b"RIFF", "a picture (WebP) or a drawing of CorelDRAW: export an outline as SVG"),
+    (
+        b"GIF8",
+        "a picture (GIF): save it as PNG for `init --target`, or trace it and save it as SVG",
+    ),
+    (
+        b"RIFF",
+        "a picture (WebP): save it as PNG for `init --target`; or a drawing of CorelDRAW: save it as SVG",
+    ),
 ];
 
 /// The text of a file, with `\n` at the ends of its lines; an error if it is not a regular file, or

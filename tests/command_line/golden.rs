@@ -35,7 +35,7 @@ fn losses_and_cut_files_of_the_shipped_scenes_do_not_change() {
     for scene in [scenes("configs/scenes"), scenes("configs/examples")].concat() {
         let [iterations, factorisations] = effort(&scene);
         let (name, scene) = (scene.file_stem().unwrap().to_str().unwrap(), scene.display());
-        let listing = work.json(&format!("inspect gradient {scene} --design start --json"));
+        let listing = work.json(&format!("inspect gradient {scene} --design start"));
         work.output(&format!("cut {scene} --design start --out {name} --force"));
         let drawing = std::fs::read(work.path(name).join("cut.dxf")).unwrap();
         let (loss, hash) = (&listing["loss"], blake3::hash(&drawing).to_hex());

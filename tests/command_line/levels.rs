@@ -59,10 +59,11 @@ fn levels_are_compared_at_one_design() {
         .collect();
     assert_eq!(names, ["pin", "linear", "draft", "standard", "fine"]);
     work.prints(&levels, &["no level lowers: window mesh"]);
-    let draft = work.output(&format!("inspect equilibrium {PLATE} --design start --level draft"));
+    let draft = work.json(&format!("inspect equilibrium {PLATE} --design start --level draft"));
     // The weight comes on at negative load factors.
-    let loaded = (draft.lines())
-        .filter(|line| line.contains("Converged") && !line.trim_start().starts_with('-'));
+    let loaded = draft["steps"].as_array().unwrap().iter().filter(|step| {
+        step["status"] == "converged" && step["load_factor"].as_f64().unwrap() >= 0.0
+    });
     assert_eq!(loaded.count(), 5, "{draft}");
 }
 

@@ -24,7 +24,7 @@ fn printed(work: &Workplace, command: &str, sections: &str, options: &str) -> Va
          [optimiser]\nsteps = 1\nlearning_rate = 0.1\n"
     );
     work.write("case.toml", scene);
-    let text = work.output(&format!("inspect {command} case.toml --json {options}"));
+    let text = work.output(&format!("inspect {command} case.toml {options}"));
     serde_json::from_str(&text).unwrap()
 }
 

@@ -12,8 +12,8 @@ const SCENE: &str = "configs/scenes/linear-7x7.toml";
 fn designed() -> (Workplace, Vec<Vec<[[f64; 2]; 4]>>) {
     let work = Workplace::new();
     work.output(&format!("design {SCENE} --steps 2 --quiet"));
-    let listing = work
-        .output(&format!("inspect equilibrium {SCENE} --design runs/linear-7x7/state.json --json"));
+    let listing =
+        work.output(&format!("inspect equilibrium {SCENE} --design runs/linear-7x7/state.json"));
     let listing: Value = serde_json::from_str(&listing).unwrap();
     let steps = listing["steps"].as_array().unwrap();
     let corners =

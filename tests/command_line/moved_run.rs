@@ -11,8 +11,8 @@ fn moved_run() -> Workplace {
     let work = Workplace::new();
     // After two steps the report has errors.
     work.output(&format!("design {SCENE} --steps 2 --force --quiet"));
-    let before = work
-        .output(&format!("inspect equilibrium {SCENE} --design runs/pet-3x3/state.json --json"));
+    let before =
+        work.output(&format!("inspect equilibrium {SCENE} --design runs/pet-3x3/state.json"));
     std::fs::rename(work.path("runs/pet-3x3"), work.path("moved")).unwrap();
     std::fs::remove_dir_all(work.path("configs")).unwrap();
     std::fs::remove_file(work.path("data")).unwrap();
@@ -23,7 +23,7 @@ fn moved_run() -> Workplace {
 #[test]
 fn a_run_is_replayed_from_its_folder_alone() {
     let work = moved_run();
-    let after = work.output("inspect equilibrium moved --json");
+    let after = work.output("inspect equilibrium moved");
     // The design is named by its place, which is another one.
     let steps = |text: &str| -> serde_json::Value {
         serde_json::from_str::<serde_json::Value>(text).unwrap()["steps"].clone()

@@ -75,6 +75,11 @@ pub fn fitted(scene: &Scene, side: Option<f64>) -> Result<FittedScene, Fault> {
     let size = sheet.size(&target);
     let kept_by = lost.first().and_then(|_| kept_by(&target, size, sheet.limits));
     let (config, held) = fasten(scene, &sheet, &topology, side);
+    if config.supports.is_empty() {
+        refuse!(
+            "no panel of {side:.0} mm has room for a fastener: use smaller panels or a larger sheet"
+        );
+    }
     Ok(FittedScene {
         config,
         held,
@@ -129,7 +134,7 @@ fn even_sheet(scene: &Scene, side: f64, search: Search) -> Result<EvenSheet, Fau
     };
     largest(&scene.target.region(), limits, search).ok_or_else(|| {
         fault!(
-            "the target is nowhere as wide as two panels of {side:.0} mm: use a larger sheet (--size, --stock) or a thinner one (--thickness)"
+            "the target is nowhere as wide as two panels of {side:.0} mm: use smaller panels (at least {smallest:.0} mm), a larger sheet (--size, --stock) or a thinner one (--thickness)"
         )
     })
 }

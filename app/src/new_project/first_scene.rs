@@ -135,8 +135,14 @@ impl FirstScene {
         weights: &Path,
         drawing: Option<&OwnDrawing>,
     ) -> Result<String> {
+        // A folder elsewhere may be moved without the files of the program.
+        let is_here = std::path::absolute(folder)?.starts_with(std::env::current_dir()?);
         let named = |file: &Path| -> Result<String> {
-            Ok(relative_path::from_folder(folder, file)?.display().to_string())
+            let named = match is_here || file.starts_with(folder) {
+                true => relative_path::from_folder(folder, file)?,
+                false => std::path::absolute(file)?,
+            };
+            Ok(named.display().to_string())
         };
         let template = Template::of(self.regime);
         let factor = self.thickness / template.thickness;

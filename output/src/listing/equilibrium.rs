@@ -1,6 +1,5 @@
 //! The equilibrium path in numbers.
 
-use crate::listing::Listing;
 use design::{
     equilibrium::{hinged_sheet::HingedSheet, load_step::LoadStep, solver::EquilibriumSolver},
     hinge_law::{HingeEnergy, Order},
@@ -9,43 +8,20 @@ use design::{
     sheet::{kinematics::deployed_corners, validity::overlap},
 };
 use serde_json::{Value, json};
-use support::table::Table;
-
-const HEAD: [&str; 12] = [
-    "zeta",
-    "weight",
-    "status",
-    "residual",
-    "iterations",
-    "factorised",
-    "rejected",
-    "negative\npivots",
-    "condition",
-    "U\nN mm",
-    "Pi\nN mm",
-    "opening\ndeg",
-];
 
 /// Follows the equilibrium path of a design and lists its load steps in their order; an error if
 /// the model has no equilibrium.
-pub fn equilibrium(problem: &DesignProblem, design: &DesignVector) -> Result<Listing, DesignError> {
+pub fn equilibrium(problem: &DesignProblem, design: &DesignVector) -> Result<Value, DesignError> {
     let mechanics = problem.model.equilibrium()?;
     let Deployment { sheet, path, .. } = problem.deploy(design)?;
     let law = mechanics.law.prepare(&sheet.designs());
     let hinged = mechanics.hinged(&sheet, &*law, false);
-    let list = |step: &LoadStep| list(hinged, step, &mechanics.solver);
-    let (steps, rows): (Vec<Value>, Vec<_>) = path.iter().map(list).unzip();
-    let mut table = Table::new(HEAD);
-    rows.into_iter().for_each(|row| table.row(row));
-    Ok(Listing { numbers: json!({ "steps": steps }), document: table.into() })
+    let steps = path.iter().map(|step| list(hinged, step, &mechanics.solver));
+    Ok(json!({ "steps": steps.collect::<Vec<_>>() }))
 }
 
-/// A load step in numbers and as a row.
-fn list(
-    hinged: HingedSheet,
-    step: &LoadStep,
-    solver: &EquilibriumSolver,
-) -> (Value, [String; HEAD.len()]) {
+/// A load step in numbers.
+fn list(hinged: HingedSheet, step: &LoadStep, solver: &EquilibriumSolver) -> Value {
     let condition = Some(step.condition(solver)).filter(|condition| condition.is_finite());
     let deformations: Vec<[f64; 3]> = step.deformations.iter().map(|eps| eps.to_array()).collect();
     let of_law = hinged.law.energies(&step.deformations, Order::Forces);
@@ -56,7 +32,7 @@ fn list(
         let hinges = std::iter::zip(&of_law, &deformations);
         hinges.map(|(energy, eps)| 0.5 * energy.forces[c] * eps[c]).sum()
     };
-    let numbers = json!({
+    json!({
         // zeta, and the part of the weight of a hanging sheet that is on; 1 once the loads act.
         "load_factor": step.load_factor,
         "weight": step.weight,
@@ -98,21 +74,5 @@ fn list(
         "inside": step.inside,
         // Maximum overlap of two panels, relative to the mean panel area.
         "overlap": overlap(hinged.sheet, &step.configuration),
-    });
-    let openings = deformations.iter().map(|eps| eps[2].abs());
-    let row = [
-        format!("{:.4}", step.load_factor),
-        format!("{:.2}", step.weight),
-        format!("{:?}", step.status),
-        format!("{:.1e}", step.residual),
-        step.effort.iterations.to_string(),
-        step.effort.factorisations.to_string(),
-        step.effort.rejected.to_string(),
-        step.negative_pivots.to_string(),
-        format!("{:.1e}", condition.unwrap_or(f64::INFINITY)),
-        format!("{total:.5e}"),
-        format!("{:.5e}", step.potential),
-        format!("{:.2}", openings.fold(0.0, f64::max).to_degrees()),
-    ];
-    (numbers, row)
+    })
 }

@@ -1,6 +1,5 @@
 //! Objective and gradient in numbers.
 
-use crate::listing::Listing;
 use design::{
     objective::{
         design_problem::{DesignError, DesignProblem},
@@ -10,8 +9,7 @@ use design::{
     pattern::design_vector::DesignVector,
 };
 use scene::{Scene, placement::seen};
-use serde_json::json;
-use support::table::Table;
+use serde_json::{Value, json};
 
 /// Lists L of (16), its terms and its gradient in (z, ell, omega) of a design of a scene and its
 /// problem.
@@ -19,14 +17,14 @@ pub fn gradient(
     scene: &Scene,
     problem: &DesignProblem,
     design: &DesignVector,
-) -> Result<Listing, DesignError> {
+) -> Result<Value, DesignError> {
     let found = problem.evaluate(design)?;
     let outline_error = outline_error(&problem.objective, &found.deployment);
     let seen = seen(scene, &found.deployment);
     let weights = problem.objective.weights();
     let weights: TermValues = weights.map(|(name, _, weight)| (name.to_owned(), weight)).collect();
     let gradient = &found.gradient;
-    let numbers = json!({
+    Ok(json!({
         // L of (16) (mm^2), its unweighted terms, and their weights.
         "loss": found.loss,
         "terms": found.terms,
@@ -40,24 +38,5 @@ pub fn gradient(
         "outline_error": outline_error,
         // Area in common of what one sees of the panels and the target, over the area of both.
         "seen": seen,
-    });
-    let number = |value: f64| format!("{value:.6e}");
-    let mut table = Table::new(["", "value", "weight"]);
-    let rows = std::iter::zip(found.terms.values(), weights.values());
-    for (label, (value, weight)) in std::iter::zip(problem.objective.labels(), rows) {
-        table.row([label, number(*value), number(*weight)]);
-    }
-    let norm = |block: &[f64]| block.iter().map(|g| g * g).sum::<f64>().sqrt();
-    for (name, value) in [
-        ("loss (mm^2)", found.loss),
-        ("|dL/dz|", norm(&gradient.pattern.z)),
-        ("|dL/dell|", norm(&gradient.pattern.ell.concat())),
-        ("|dL/domega|", norm(&gradient.omega)),
-        ("adjoint residual", found.adjoint_residual),
-        ("outline error (mm)", outline_error),
-        ("seen as the target", seen),
-    ] {
-        table.row([name.to_owned(), number(value), String::new()]);
-    }
-    Ok(Listing { numbers, document: table.into() })
+    }))
 }

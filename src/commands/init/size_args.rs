@@ -38,6 +38,12 @@ pub(super) fn length(text: &str) -> Result<f64, String> {
     length.ok_or_else(|| "must be 0 to 1000 mm".into())
 }
 
+/// A part of a whole, neither none of it nor all.
+pub(super) fn part(text: &str) -> Result<f64, String> {
+    let part = text.parse().ok().filter(|part| *part > 0.0 && *part < 1.0);
+    part.ok_or_else(|| "must be between 0 and 1".into())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

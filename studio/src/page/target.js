@@ -134,9 +134,9 @@ function writeFitSliders(box) {
     });
     label.appendChild(input);
   };
-  const { smallest, side, traced } = fit;
+  const { smallest, side, threshold } = fit;
   slider((mm) => `Side of the panels: ${shown(mm, 3)} mm`, "Larger panels are fewer, and show less of the drawing", "panel_side", { min: smallest, max: 3 * smallest, step: smallest / 50 }, side, (panel_side) => ask({ do: "crop", panel_side }));
-  if (traced) slider((part) => `Traced at ${Math.round(100 * part)} % of the contrast`, "The outline of the picture: from the colour of its border to the most different one", "threshold", { min: 0.05, max: 0.95, step: 0.05 }, dropped.threshold ?? 0.5, () => {});
+  if (threshold !== null) slider((part) => `Traced at ${Math.round(100 * part)} % of the largest difference`, "The outline of the picture: from the colour of its border to the most different one", "threshold", { min: 0.02, max: 0.98, step: 0.01 }, threshold, () => {});
 }
 
 /** The panels that a side under the slider gives, over the target, and how much of it they show. */
