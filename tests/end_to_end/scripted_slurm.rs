@@ -143,12 +143,13 @@ fn two_submissions_at_once_submit_one_array() {
     let slurm = Scripted::new();
     slurm.answer("true");
     let arrays = slurm.work.path("arrays");
-    // Until the second submission has failed, the first one waits in `sbatch`.
+    // Until the second submission has failed, the first one waits in `sbatch`, but not without the
+    // folder of the test.
     let refused = slurm.work.path("refused");
     slurm.script(
         "sbatch",
         &format!(
-            "echo x >> {}; until [ -e {} ]; do sleep 0.05; done; echo 7",
+            "echo x >> {0}; while [ -e {0} ] && ! [ -e {1} ]; do sleep 0.05; done; echo 7",
             arrays.display(),
             refused.display()
         ),
