@@ -13,7 +13,8 @@ use scene::{
 };
 
 /// Makes the sheet that opens onto the target of a scene; also returns what a person may expect of
-/// it. Its panels have a side (mm), or else the smallest one that they can have. A sheet that shows too little of its target is refused unless `anyway`.
+/// it. Its panels have a side (mm), or else the smallest one that they can have. A sheet that shows
+/// too little of its target is refused unless `anyway`.
 pub fn fit_to_target(
     scene: &Scene,
     side: Option<f64>,

@@ -280,7 +280,7 @@ mod tests {
     fn files_that_are_no_drawings_are_named_with_the_way_out() {
         let light_burn = "<?xml version='1.0'?><LightBurnProject AppVersion='1.4'/>";
         for (bytes, part) in [
-            (&b"\x89PNG\r\n\x1a\n\0\0"[..], "a picture (PNG): trace it"),
+            (&b"\x89PNG\r\n\x1a\n\0\0"[..], "a picture (PNG): `init --target` traces it"),
             (b"\xFF\xD8\xFF\xE0\0", "a picture (JPEG)"),
             (b"%!PS-Adobe-3.0 EPSF-3.0\n", "PostScript (EPS)"),
             (b"AC1027\0", "a DWG drawing: save it as DXF"),
