@@ -86,7 +86,7 @@ def test_the_implicit_gradient_in_every_input(problem):
 
 def test_the_path_is_that_of_the_command_line(problem, program):
     scene = SCENES / {9: "pet-3x3.toml", 12: "a4-plate.toml", 49: "linear-7x7.toml"}[problem.loads.shape[0]]
-    printed = subprocess.run([program, "inspect", "equilibrium", scene, "--design", "start", "--json"], capture_output=True, check=True).stdout
+    printed = subprocess.run([program, "inspect", "equilibrium", scene, "--design", "start"], capture_output=True, check=True).stdout
     steps = json.loads(printed)["steps"]
     path = problem.equilibrium(problem.start, warm=False)
     assert path.followed and path.status == [step["status"] for step in steps]
