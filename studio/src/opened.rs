@@ -8,7 +8,6 @@ use design::{equilibrium::warm_start::WarmStart, optimise::outer_loop::Ended};
 use scene::{Scene, SceneConfig, target::TargetShape};
 use serde_json::{Value, json};
 use std::{collections::BTreeMap, path::PathBuf};
-use support::Fault;
 
 /// An opened sheet.
 pub(crate) struct Opened {
@@ -83,8 +82,8 @@ pub(crate) fn fitted_to(
     let target = &scene.target;
     let (centre, height) = drawing.placed(target.mean(), target.area())?;
     let target = TargetShape::Svg { file, centre, height: Some(height), rotation_deg: 0.0 };
-    let drawn = scene.changed(SceneConfig { target, ..scene.config.clone() })?;
-    let drawn = in_space(&drawn, space)?;
+    let drawn = SceneConfig { target, ..scene.config.clone() };
+    let drawn = scene.changed(in_space(drawn, space))?;
     let fit = fitted(&drawn, side)?;
     let says = expected(&fit, drawn.material.thickness);
     let (panels, side) = (fit.panels, fit.side);
@@ -100,10 +99,10 @@ pub(crate) fn fitted_to(
     Ok((scene, says))
 }
 
-/// The scene before its sheet was fitted to a drawing.
-fn in_space(scene: &Scene, space: Option<&SceneConfig>) -> Result<Scene, Fault> {
-    let space = space.unwrap_or(&scene.config).clone();
-    scene.changed(SceneConfig {
+/// The keys before the sheet was fitted to a drawing, from a space, if one is known.
+fn in_space(config: SceneConfig, space: Option<&SceneConfig>) -> SceneConfig {
+    let Some(space) = space.cloned() else { return config };
+    SceneConfig {
         sheet: space.sheet,
         cells: space.cells,
         start: space.start,
@@ -111,14 +110,15 @@ fn in_space(scene: &Scene, space: Option<&SceneConfig>) -> Result<Scene, Fault> 
         supports: space.supports,
         loads: space.loads,
         drive: space.drive,
-        ..scene.config.clone()
-    })
+        ..config
+    }
 }
 
 impl Opened {
     /// What panels with another side (mm) show of its target.
     pub(crate) fn cropped(&self, side: f64) -> Result<Value> {
-        let (panels, seen) = cropped(&in_space(&self.scene, self.space.as_ref())?, side)?;
+        let uncut = in_space(self.scene.config.clone(), self.space.as_ref());
+        let (panels, seen) = cropped(&self.scene.changed(uncut)?, side)?;
         Ok(json!({ "panels": panels, "seen": seen }))
     }
 }

@@ -127,15 +127,22 @@ fn an_answer_that_is_not_understood_is_quoted_and_submits_nothing() {
     assert!(!record.exists());
 }
 
-/// A site that refuses an array says only that its specification is invalid.
+/// The campaign has 40 rays and the 3 of its spot check. A site that refuses an array says only
+/// that its specification is invalid.
 #[test]
-fn a_refused_array_names_the_limit() {
+fn an_array_has_no_more_tasks_than_rays_and_a_refusal_names_the_limit() {
     let slurm = Scripted::new();
     slurm.answer("true");
     let refused = "Batch job submission failed: Invalid job array specification";
     slurm.script("sbatch", &format!("echo '{refused}' >&2; exit 1"));
-    let message = failure(&mut slurm.campaign(&format!("{CAMPAIGN} 5000 1")));
-    assert!(message.contains(refused) && message.contains("MaxArraySize"), "{message}");
+    for (numbers, tasks) in [("4 1", "4 tasks: "), ("5000 1", "43 tasks: ")] {
+        let message = failure(&mut slurm.campaign(&format!("{CAMPAIGN} {numbers}")));
+        assert!(message.contains(tasks) && message.contains("MaxArraySize"), "{message}");
+    }
+    for beyond in ["1000001 1", "1 525601"] {
+        let message = failure(&mut slurm.campaign(&format!("{CAMPAIGN} {beyond}")));
+        assert!(message.contains("MINUTES are"), "{message}");
+    }
 }
 
 #[test]
@@ -177,10 +184,8 @@ fn an_array_whose_submission_was_killed_is_not_submitted_again() {
     slurm.answer("true");
     let arrays = slurm.work.path("arrays");
     let array = format!("echo x >> {}", arrays.display());
-    slurm.script(
-        "sbatch",
-        &format!("{array}; set -- $(cat /proc/$PPID/stat); kill -9 $4 $PPID; echo 7"),
-    );
+    let kill = "set -- $(cat /proc/$PPID/stat); kill -9 $4 $PPID";
+    slurm.script("sbatch", &format!("{array}; {kill}; echo 7"));
     let submit = format!("{CAMPAIGN} 4 1");
     let killed = slurm.campaign(&submit).status().unwrap();
     assert_eq!(killed.code(), None);

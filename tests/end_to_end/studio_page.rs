@@ -336,8 +336,7 @@ fn picture_under_sliders(tab: &mut Tab, studio: &Studio, work: &Workplace) {
     std::fs::write(&picture, tab.picture()).unwrap();
     reload(tab, studio);
     after(tab, |tab| tab.drop_file(picture.to_str().unwrap(), "#stage"));
-    let folder = work.path("studio/leaf");
-    assert!(scene_on_disk(&folder).contains("file = \"snapshot-"));
+    assert!(scene_on_disk(&work.path("studio/leaf")).contains("file = \"snapshot-"));
     let panels = tab.value("fit.panels").as_u64().unwrap();
     let fire = |tab: &mut Tab, id: &str, value: f64, event: &str| {
         tab.value(&format!(
@@ -346,11 +345,8 @@ fn picture_under_sliders(tab: &mut Tab, studio: &Studio, work: &Workplace) {
     };
     let side = 1.5 * tab.value("fit.smallest").as_f64().unwrap();
     fire(tab, "fit-panel_side", side, "input");
-    tab.wait(
-        "crop !== null && document.getElementById('fit').textContent.includes('panels show about')",
-    );
-    let shown = tab.value("crop.panels.length").as_u64().unwrap();
-    assert!(shown < panels, "{shown} of {panels}");
+    tab.wait(&says("fit", "panels show about"));
+    assert!(tab.value("crop.panels.length").as_u64().unwrap() < panels);
     after(tab, |tab| fire(tab, "fit-panel_side", side, "change"));
     assert!(tab.value("fit.panels").as_u64().unwrap() < panels);
     after(tab, |tab| fire(tab, "fit-threshold", 0.9, "change"));

@@ -169,7 +169,7 @@ fn shapes(mut rings: Vec<Ring>) -> (Vec<Ring>, bool) {
     };
     let of_line: Vec<bool> =
         (0..rings.len()).map(|i| is_line(*around[i].first().unwrap_or(&i))).collect();
-    // Of a line its outer side: the next ring in it is its inner side.
+    // The outer side of a line has its inner side as the next ring in it.
     let is_outer = |i: usize| {
         let depth = around[i].len();
         let next = |ring: &Vec<usize>| ring.len() == depth + 1 && ring.contains(&i);

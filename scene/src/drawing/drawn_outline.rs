@@ -96,7 +96,7 @@ pub(super) fn of_text(text: &str, number: Option<usize>) -> Result<Outline, Faul
 struct Drawn {
     /// The largest first.
     contours: Vec<Contour>,
-    /// For each those before it that it lies in.
+    /// The contours before each one that it lies in.
     around: Vec<Vec<usize>>,
     /// Whether their points are in mm.
     has_unit: bool,
