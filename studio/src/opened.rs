@@ -1,7 +1,7 @@
 //! The sheet that is open: its scene, what was before it, and its runs.
 
 use crate::project::Project;
-use analysis::fit::scene::{cropped, fitted, smallest_side};
+use analysis::fit::scene::{FittedScene, cropped, fitted, smallest_side};
 use anyhow::Result;
 use app::{cut::Verdict, fitting::expected, own_drawing::OwnDrawing};
 use design::{equilibrium::warm_start::WarmStart, optimise::outer_loop::Ended};
@@ -84,17 +84,22 @@ pub(crate) fn fitted_to(
     let target = TargetShape::Svg { file, centre, height: Some(height), rotation_deg: 0.0 };
     let drawn = SceneConfig { target, ..scene.config.clone() };
     let drawn = scene.changed(in_space(drawn, space))?;
-    let fit = fitted(&drawn, side)?;
-    let says = expected(&fit, drawn.material.thickness);
+    let (scene, mut says) = told(&drawn, fitted(&drawn, side)?)?;
+    says["threshold"] = json!(drawing.threshold());
+    Ok((scene, says))
+}
+
+/// A scene with the sheet that was fitted to it, and what is said of it.
+pub(crate) fn told(scene: &Scene, fit: FittedScene) -> Result<(Scene, Value)> {
+    let says = expected(&fit, scene.material.thickness);
     let (panels, side) = (fit.panels, fit.side);
-    let scene = drawn.changed(fit.config)?;
+    let scene = scene.changed(fit.config)?;
     let says = json!({
         "target": scene.config.target,
         "says": says,
         "panels": panels,
         "side": side,
         "smallest": smallest_side(&scene),
-        "threshold": drawing.threshold(),
     });
     Ok((scene, says))
 }

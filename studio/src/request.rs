@@ -24,6 +24,11 @@ pub enum Request {
         /// Side of the panels (mm).
         panel_side: f64,
     },
+    /// The panel at a point is taken out, or one is added there.
+    Cell {
+        /// The point on the opened sheet (mm).
+        at: [f64; 2],
+    },
     /// How much of the hinges is modelled is other than before.
     Level {
         /// The level.

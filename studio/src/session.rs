@@ -5,12 +5,13 @@ use crate::{
     draft::{Steps, draft, draft_data},
     event::{Event, Kind, locked},
     full_analysis::{FullAnalysis, Listener, Resting, refusal, run_name, shown},
-    opened::{Opened, Run, fitted_to},
+    opened::{Opened, Run, fitted_to, told},
     panels::with_panels,
     project::Project,
     request::{Change, Drawing, Files, NewSheet, Request},
     run_listing::files_of_run,
 };
+use analysis::fit::scene::toggled;
 use analysis::levels::levels;
 use analysis::refinement::inverse_design;
 use anyhow::{Context, Result, bail, ensure};
@@ -131,6 +132,13 @@ impl Session {
             Request::Drawing(drawing) => self.drawing(&drawing)?,
             Request::Crop { panel_side } => {
                 self.tell(Kind::Crop, &self.opened()?.cropped(panel_side)?);
+            }
+            Request::Cell { at } => {
+                self.tell(Kind::Working, &"fit");
+                let scene = &self.opened()?.scene;
+                let (scene, says) = told(scene, toggled(scene, at)?)?;
+                self.draft(scene, None)?;
+                self.tell(Kind::Fit, &says);
             }
             Request::Level { level } => {
                 let other = self.opened()?.scene.at_level(level)?;

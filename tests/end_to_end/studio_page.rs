@@ -351,6 +351,14 @@ fn picture_under_sliders(tab: &mut Tab, studio: &Studio, work: &Workplace) {
     assert!(tab.value("fit.panels").as_u64().unwrap() < panels);
     after(tab, |tab| fire(tab, "fit-threshold", 0.9, "change"));
     assert_eq!(tab.value("fit.side").as_f64(), Some(side));
+    // A click on a panel takes it out, a click on its place adds it again.
+    let panels = tab.value("fit.panels").as_u64().unwrap();
+    tab.click("[value=cells]");
+    tab.value("place = meanOf(boundariesDrawn[0])");
+    after(tab, |tab| tab.value("askCell(place)"));
+    assert!(tab.value("fit.panels").as_u64().unwrap() < panels);
+    after(tab, |tab| tab.value("askCell(place)"));
+    assert_eq!(tab.value("fit.panels").as_u64(), Some(panels));
     assert_no_error(tab);
 }
 

@@ -1,9 +1,9 @@
 //! The sheet of a drawing from an even pattern: where the drawing lies on the opened pattern, and
 //! the panels there.
 
-use super::even_pattern::{Cell, moved, neighbours, squares};
+use super::even_pattern::{Cell, centre, moved, neighbours, squares};
 use super::raster::Raster;
-use super::trimmed::{Limits, ON_EDGE, RINGS, loops, opened, panels};
+use super::trimmed::{Limits, ON_EDGE, RINGS, largest_joined, loops, opened, panels};
 use design::geometry::plane::{complex, point};
 use design::geometry::polygon::{bounds, distance_to_outline, distance_to_segment, size};
 use design::geometry::region::{Contour, Region, seen};
@@ -15,6 +15,7 @@ use rayon::prelude::*;
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::{FRAC_PI_2, PI};
+use support::{Fault, ensure};
 
 /// Places that are tried along a pitch, and turns that are tried in a quarter turn.
 const SHIFTS: u32 = 4;
@@ -98,6 +99,10 @@ impl EvenSheet {
             };
             best(&drawing, limits, scales.clone().flat_map(along).collect(), search, &ON_AXIS)
         });
+        let value = |sheet: &Option<Self>| sheet.as_ref().map_or(0.0, |sheet| sheet.seen);
+        if value(&symmetric) + FOR_SYMMETRY >= 1.0 {
+            return symmetric;
+        }
         let turn = |k: u32| FRAC_PI_2 * f64::from(k) / f64::from(TURNS);
         let turned = scales.flat_map(|scale| (0..TURNS).map(move |k| (scale, turn(k))));
         let shift = |k: u32| f64::from(k) / f64::from(SHIFTS);
@@ -106,8 +111,43 @@ impl EvenSheet {
             all.map(move |[u, v]| placed(middle, scale, turn, [shift(u), shift(v)], &limits))
         };
         let any = best(&drawing, limits, turned.flat_map(shifts).collect(), search, &ALL_STEPS);
-        let value = |sheet: &Option<Self>| sheet.as_ref().map_or(0.0, |sheet| sheet.seen);
         if value(&symmetric) + FOR_SYMMETRY >= value(&any) { symmetric } else { any }
+    }
+
+    /// The sheet of these loops at a place of a drawing, less the square at a point of the opened
+    /// pattern, or with a square there and those that it needs to hang on.
+    pub(super) fn toggled(
+        drawing: &Region,
+        place: Similarity,
+        limits: Limits,
+        mut loops: BTreeSet<Cell>,
+        at: [f64; 2],
+    ) -> Result<Self, Fault> {
+        let drawing =
+            drawing.map(|at| point(place.of(complex(at)))).simplified(TOLERANCE, |_| false);
+        let [i, j] = at.map(|x| (x / limits.opening.pitch()).floor() as i32);
+        let around = [[i - 1, j - 1], [i, j - 1], [i - 1, j], [i, j]];
+        let before = squares(&loops);
+        if before.contains(&[i, j]) {
+            loops.retain(|it| !around.contains(it));
+        } else {
+            let more = |it: &Cell| squares(&BTreeSet::from([*it])).difference(&before).count();
+            let fewest = around.iter().map(more).min();
+            let needed = around.into_iter().filter(|it| Some(more(it)) == fewest);
+            loops.extend(needed.take(if fewest == Some(1) { 4 } else { 1 }));
+        }
+        let in_drawing =
+            |cell: &Cell| drawing.contains(moved(limits.opening.motion(*cell), centre(*cell)));
+        ensure!(
+            squares(&loops).difference(&before).all(in_drawing),
+            "a panel there, or the one that it needs next to it, is outside of the target"
+        );
+        ensure!(
+            !loops.is_empty() && largest_joined(loops.clone()) == loops,
+            "the sheet would be no mechanism of one piece: each panel is one of four around a gap, and gaps are joined by two panels"
+        );
+        let panels = BTreeMap::new();
+        Ok(Self { limits, place, drawing, loops, panels, seen: 0.0 }.with_panels(OPENINGS))
     }
 
     /// How many points of the drawing are so near to the squares that panels may have them; `None`
@@ -397,6 +437,24 @@ mod tests {
         count(|it| it[0] && it[1]) / count(|it| it[0] || it[1])
     }
 
+    /// A square at the end is taken out and added again; without one in the middle of a bridge, and
+    /// with one outside, the sheet is refused.
+    fn assert_toggled(sheet: &EvenSheet) {
+        let still = Similarity { turn: c64::ONE, shift: c64::ZERO };
+        let toggle = |loops: &BTreeSet<Cell>, cell| {
+            let at = moved(LIMITS.opening.motion(cell), centre(cell));
+            EvenSheet::toggled(&sheet.drawing, still, LIMITS, loops.clone(), at)
+        };
+        let end = *squares(&sheet.loops).first().unwrap();
+        let less = toggle(&sheet.loops, end).unwrap();
+        assert!(less.loops.is_subset(&sheet.loops) && !less.panels.contains_key(&end));
+        assert!(toggle(&less.loops, end).unwrap().panels.contains_key(&end));
+        let bridge = [[0, 0], [1, 0], [2, 0], [3, 0]].into();
+        assert!(toggle(&bridge, [2, 0]).unwrap_err().to_string().contains("no mechanism"));
+        let outside = toggle(&sheet.loops, [end[0] - 9, end[1]]).unwrap_err().to_string();
+        assert!(outside.contains("outside of the target"), "{outside}");
+    }
+
     #[test]
     fn drawn_sheets_are_mechanisms_whose_panels_never_overlap() {
         let seen = |seed| {
@@ -432,6 +490,9 @@ mod tests {
             if seed % 20 == 0 {
                 let seen = seen_in_points(sheet.opened(1.0), &sheet.drawing);
                 assert!((sheet.seen - seen).abs() < 0.01, "{seed}: {} {seen}", sheet.seen);
+            }
+            if seed % 10 == 0 {
+                assert_toggled(&sheet);
             }
             for panel in sheet.panels.values() {
                 assert_eq!(panel.polygons.len(), 1);

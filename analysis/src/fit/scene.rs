@@ -20,7 +20,7 @@ use scene::{
     SupportKind, rounded, short,
 };
 use std::f64::consts::FRAC_PI_2;
-use support::{Fault, fault, refuse};
+use support::{Fault, Point, fault, refuse};
 
 /// The largest opening that is planned (rad): 60 degrees.
 const MOST: f64 = 1.047;
@@ -69,12 +69,40 @@ pub struct FittedScene {
 pub fn fitted(scene: &Scene, side: Option<f64>) -> Result<FittedScene, Fault> {
     let side = side.unwrap_or(smallest_side(scene));
     let sheet = even_sheet(scene, side, THOROUGH)?;
+    let mut fit = fastened(scene, &sheet, side)?;
+    if !fit.lost.is_empty() {
+        let target = scene.target.region();
+        fit.kept_by = kept_by(&target, sheet.size(&target), sheet.limits);
+    }
+    Ok(fit)
+}
+
+/// The sheet of a scene that was fitted, less the panel at a point of the opened sheet (mm), or with
+/// one there.
+pub fn toggled(scene: &Scene, at: Point) -> Result<FittedScene, Fault> {
+    let (Some(_), Some(corners)) = (&scene.config.cells, scene.config.sheet.corners) else {
+        refuse!("panels are added to and taken from a sheet that is fitted to a drawing");
+    };
+    let topology = &scene.topology;
+    let Grid { m, n } = topology.grid;
+    let [from, to] = [corners[0], corners[1]].map(complex);
+    let back = (to - from) / m as f64;
+    let side = back.norm();
+    let limits = limits(scene, side);
+    let shift = (limits.opening.pitch() - 1.0) * middle(topology) - from / back;
+    let place = Similarity { turn: back.inv(), shift };
+    let voids = (1..m).flat_map(|i| (1..n).map(move |j| [i, j]));
+    let kept = voids.filter(|[i, j]| topology.has_void(*i, *j));
+    let loops = kept.map(|void| void.map(|i| i as i32 - 1)).collect();
+    let at = point(place.of(complex(at)));
+    let sheet = EvenSheet::toggled(&scene.target.region(), place, limits, loops, at)?;
+    fastened(scene, &sheet, side)
+}
+
+/// The scene of a sheet with fasteners.
+fn fastened(scene: &Scene, sheet: &EvenSheet, side: f64) -> Result<FittedScene, Fault> {
     let topology = sheet.topology();
-    let lost = lost(&sheet);
-    let target = scene.target.region();
-    let size = sheet.size(&target);
-    let kept_by = lost.first().and_then(|_| kept_by(&target, size, sheet.limits));
-    let (config, held) = fasten(scene, &sheet, &topology, side);
+    let (config, held) = fasten(scene, sheet, &topology, side);
     if config.supports.is_empty() {
         refuse!(
             "no panel of {side:.0} mm has room for a fastener: use smaller panels or a larger sheet"
@@ -83,8 +111,8 @@ pub fn fitted(scene: &Scene, side: Option<f64>) -> Result<FittedScene, Fault> {
     Ok(FittedScene {
         config,
         held,
-        lost,
-        kept_by,
+        lost: lost(sheet),
+        kept_by: None,
         panels: topology.panel_count(),
         side,
         opening: sheet.limits.opening.angle,
@@ -114,16 +142,26 @@ fn even_sheet(scene: &Scene, side: f64, search: Search) -> Result<EvenSheet, Fau
             "the sheet has pins (level = \"pin\"): its search is on pins already; a fit is for a sheet with a hinge law"
         );
     }
-    let angle = opening(scene);
-    let process = scene.config.process;
     let smallest = smallest_side(scene);
     if side < smallest {
         refuse!(
             "panels of {side} mm are too small: the windows of two hinges, and a margin, need {smallest} mm"
         );
     }
+    let limits = limits(scene, side);
+    largest(&scene.target.region(), limits, search).ok_or_else(|| {
+        fault!(
+            "the target is nowhere as wide as two panels of {side:.0} mm: use smaller panels (at least {smallest:.0} mm), a larger sheet (--size, --stock) or a thinner one (--thickness)"
+        )
+    })
+}
+
+/// What bounds panels of a side (mm).
+fn limits(scene: &Scene, side: f64) -> Limits {
+    let angle = opening(scene);
+    let process = scene.config.process;
     let space = Region::union_of(vec![scene.config.sheet.outline().corners.to_vec()]);
-    let limits = Limits {
+    Limits {
         stock: space.extent().map(|length| length / side),
         opening: Opening { angle, set_back: set_back(scene, angle) / side },
         // The window is about the tip of the cut.
@@ -131,12 +169,7 @@ fn even_sheet(scene: &Scene, side: f64, search: Search) -> Result<EvenSheet, Fau
         width: WIDTH * scene.material.thickness / side,
         gap: f64::max(GAP, process.slit_width / side),
         slit: process.slit_width / side,
-    };
-    largest(&scene.target.region(), limits, search).ok_or_else(|| {
-        fault!(
-            "the target is nowhere as wide as two panels of {side:.0} mm: use smaller panels (at least {smallest:.0} mm), a larger sheet (--size, --stock) or a thinner one (--thickness)"
-        )
-    })
+    }
 }
 
 /// Width of the ligaments (mm). Narrow ones open more evenly between fasteners: the moment of a
@@ -235,6 +268,12 @@ fn fasten(
     best.map_or((most, None), |(config, held)| (config, Some(held)))
 }
 
+/// The middle of all panels from the corner of the grid (sides of a panel).
+fn middle(topology: &Topology) -> c64 {
+    let centre = |place: &[usize; 2]| complex(place.map(|i| i as f64 + 0.5));
+    topology.places.iter().map(centre).sum::<c64>() / topology.panel_count() as f64
+}
+
 /// An even sheet in the coordinates of its scene: turned back, so that the drawing stands upright,
 /// in mm, its lower left corner at the origin.
 struct LaidSheet<'a> {
@@ -263,10 +302,8 @@ impl<'a> LaidSheet<'a> {
         let turned = |at: &[f64; 2]| point(back * (complex(*at) - first));
         let low = complex(bounds(flat.iter().flatten().map(turned))[0]);
         let opened = sheet.limits.opening.pitch() - 1.0;
-        let mut laid = Self { topology, side, grid, first, back, low, middle: c64::ZERO, opened };
-        let count = topology.panel_count();
-        laid.middle = (0..count).map(|panel| laid.centre(panel)).sum::<c64>() / count as f64;
-        laid
+        let middle = first + middle(topology);
+        Self { topology, side, grid, first, back, low, middle, opened }
     }
 
     /// The middle of the cell of a panel (sides of a panel).

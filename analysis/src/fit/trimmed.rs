@@ -9,15 +9,17 @@ use super::even_pattern::{
     Cell, Opening, Pair, centre, corners, hinge, moved, neighbours, pairs, squares,
 };
 use design::geometry::plane::{complex, point};
-use design::geometry::polygon::{distance, distance_to_polygon};
+use design::geometry::polygon::{distance, distance_to_outline, distance_to_polygon};
 use design::geometry::region::{Contour, Corners, Region};
 use std::collections::{BTreeMap, BTreeSet};
-use std::f64::consts::FRAC_PI_2;
+use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_2};
 
 /// How far the squares are apart at most whose panels may meet.
 const NEAR: i32 = 5;
 /// Rows of missing squares that become parts of panels.
 pub(super) const RINGS: usize = 2;
+/// How far the part of the drawing that counts for a square is from its edges.
+const REACH: f64 = RINGS as f64 + 0.5;
 /// The smallest area of the drawing for which a missing square becomes a part.
 const LEAST_PART: f64 = 0.02;
 /// By how much the edges of a panel are simplified.
@@ -63,7 +65,11 @@ pub(super) fn loops(
         let corner = hinge(*pair);
         pair.iter().all(|cell| window(*cell, corner, limits).into_iter().all(inside))
     };
-    let mut left: BTreeSet<Cell> = all.filter(|at| pairs(*at).iter().all(counts)).collect();
+    largest_joined(all.filter(|at| pairs(*at).iter().all(counts)).collect())
+}
+
+/// The largest set of some loops that is joined by pairs of squares.
+pub(super) fn largest_joined(mut left: BTreeSet<Cell>) -> BTreeSet<Cell> {
     let mut largest = BTreeSet::new();
     while let Some(first) = left.pop_first() {
         let (mut joined, mut next) = (BTreeSet::from([first]), vec![first]);
@@ -115,6 +121,10 @@ pub(super) fn panels(
     order.sort_by_key(size);
     let mut done: BTreeMap<Cell, Region> = BTreeMap::new();
     for cell in order {
+        if !edge.drawing.contains_key(&cell) {
+            done.insert(cell, Region::union_of(vec![corners(cell)]));
+            continue;
+        }
         let square = edge.square(cell);
         let part = &parts[&cell];
         let panel = if part.polygons.is_empty() {
@@ -166,23 +176,32 @@ struct Edge<'a> {
     limits: &'a Limits,
     squares: BTreeSet<Cell>,
     hinges: BTreeSet<Pair>,
-    /// The drawing as each square sees it when the pattern is open.
+    /// The drawing around each square that is not inside, as the square sees it when the pattern is
+    /// open.
     drawing: BTreeMap<Cell, Region>,
 }
 
 impl<'a> Edge<'a> {
     fn new(drawing: &Region, loops: &BTreeSet<Cell>, limits: &'a Limits) -> Self {
         let squares = squares(loops);
+        let hinges: BTreeSet<Pair> = loops.iter().flat_map(|at| pairs(*at)).collect();
+        let is_hinged =
+            |cell: Cell, other: Cell| hinges.contains(&[cell.min(other), cell.max(other)]);
         let seen = |cell: &Cell| {
             let motion = limits.opening.motion(*cell);
-            (*cell, drawing.map(|at| point(motion.back(complex(at)))))
+            let at = moved(motion, centre(*cell));
+            let is_inside = neighbours(*cell).into_iter().all(|other| is_hinged(*cell, other))
+                && drawing.contours().all(|edge| distance_to_outline(at, edge) > FRAC_1_SQRT_2);
+            let around = || {
+                let there = drawing.map(|at| point(motion.back(complex(at))));
+                let out = |at: [f64; 2]| {
+                    [0, 1].map(|c| at[c] + REACH * (2.0 * at[c] - 2.0 * centre(*cell)[c]))
+                };
+                there.common(&Region::union_of(vec![corners(*cell).into_iter().map(out).collect()]))
+            };
+            (!is_inside).then(|| (*cell, around()))
         };
-        Self {
-            limits,
-            hinges: loops.iter().flat_map(|at| pairs(*at)).collect(),
-            drawing: squares.iter().map(seen).collect(),
-            squares,
-        }
+        Self { limits, drawing: squares.iter().filter_map(seen).collect(), hinges, squares }
     }
 
     /// The hinges of a square.
@@ -239,7 +258,9 @@ impl<'a> Edge<'a> {
         let part = |cell: &Cell| {
             let own = owner.iter().filter(|(at, of)| *of == cell && *at != cell);
             let squares = own.map(|(at, _)| corners(*at)).collect();
-            (*cell, Region::union_of(squares).common(&self.drawing[cell]))
+            let drawing = self.drawing.get(cell);
+            let common = drawing.map(|it| Region::union_of(squares).common(it));
+            (*cell, common.unwrap_or_default())
         };
         self.squares.iter().map(part).collect()
     }

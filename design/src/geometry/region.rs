@@ -51,6 +51,9 @@ impl Region {
 
     /// The points of this region that are not in another.
     pub fn minus(&self, other: &Self) -> Self {
+        if other.polygons.is_empty() {
+            return self.clone();
+        }
         self.overlay(other, OverlayRule::Difference)
     }
 

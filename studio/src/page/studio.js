@@ -149,7 +149,7 @@ connect({
   },
 
   fit(expected) {
-    fit = { ...expected, target: JSON.stringify(expected.target) };
+    fit = { ...fit, ...expected, target: JSON.stringify(expected.target) };
     sayFit();
     writeFields();
     taken = false;
@@ -371,7 +371,7 @@ byId("machine").addEventListener("change", (event) => {
   byId("machine-says").textContent = shop.machines.find(([name]) => name === event.target.value)?.[1] ?? "";
 });
 byId("ghost").addEventListener("change", () => show({}));
-byId("modes").addEventListener("change", () => { openGripMenu(null); show({}); });
+byId("modes").addEventListener("change", () => { openGripMenu(null); show(mode() === "cells" ? { state: stateCount - 1 } : {}); });
 document.addEventListener("keydown", (event) => {
   if (!(event.ctrlKey || event.metaKey) || event.key.toLowerCase() !== "z" || ["text", "number"].includes(event.target.type)) return;
   event.preventDefault();
@@ -387,7 +387,9 @@ stage.addEventListener("pointerdown", (event) => {
   grabbed = handleAt(at);
   const place = mode() === "grip" && !busy ? panelAt(at) : null;
   if (place) openGripMenu(place);
-  if (grabbed < 0 && !place) return;
+  const picked = mode() === "cells" && !busy;
+  if (picked) askCell(at);
+  if (grabbed < 0 && !place && !picked) return;
   event.stopImmediatePropagation();
   if (grabbed >= 0) stage.setPointerCapture(event.pointerId);
 }, true);

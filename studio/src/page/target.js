@@ -139,6 +139,12 @@ function writeFitSliders(box) {
   if (threshold !== null) slider((part) => `Traced at ${Math.round(100 * part)} % of the largest difference`, "The outline of the picture: from the colour of its border to the most different one", "threshold", { min: 0.02, max: 0.98, step: 0.01 }, threshold, () => {});
 }
 
+/** Takes out the panel at a pixel of the opened sheet, or adds one there; first the sheet is opened. */
+function askCell(at) {
+  if (shownNow.state < stateCount - 1) show({ state: stateCount - 1 });
+  else ask({ do: "cell", at: toMm(at) });
+}
+
 /** The panels that a side under the slider gives, over the target, and how much of it they show. */
 let crop = null;
 overlays.push(() => {
