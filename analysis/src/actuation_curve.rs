@@ -15,7 +15,7 @@
 use crate::unit::Unit;
 use design::equilibrium::displacement_control::{magnitude, work};
 use design::equilibrium::load_step::LoadStep;
-use design::equilibrium::load_steps::Increment;
+use design::equilibrium::load_steps::LoadIncrement;
 use design::objective::design_problem::{Deployment, Mechanics};
 use design::sheet::cut_sheet::Sheet;
 use design::sheet::kinematics::Configuration;
@@ -76,7 +76,7 @@ impl ActuationCurve {
         let (top, reached) = (highest(&coarse), first_reached(&coarse));
         let mut factors = Vec::new();
         let mut from = 0.0;
-        for (i, Increment { at: to, .. }) in increments.into_iter().enumerate() {
+        for (i, LoadIncrement { at: to, .. }) in increments.into_iter().enumerate() {
             let fine = i + 1 == top || i == top || Some(i) == reached;
             let parts = if fine { FINE_STEPS } else { 1 };
             factors

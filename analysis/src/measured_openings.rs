@@ -7,7 +7,7 @@
 use crate::path_fit::Fit;
 use design::geometry::plane::{complex, point};
 use design::geometry::polygon::distance;
-use design::geometry::similarity::{Pair, Scale, Similarity};
+use design::geometry::similarity::{Correspondence, Scale, Similarity};
 use design::sheet::cut_sheet::Sheet;
 use design::sheet::kinematics::hinge_deformations;
 use serde::Serialize;
@@ -50,7 +50,7 @@ pub struct MeasuredOpening {
 impl MeasuredPanel {
     /// The panels whose centre, or two other marks, are measured.
     pub fn all(sheet: &Sheet, fit: &Fit) -> Vec<Self> {
-        let mut marks: Vec<Vec<Pair>> = vec![Vec::new(); sheet.panels.len()];
+        let mut marks: Vec<Vec<Correspondence>> = vec![Vec::new(); sheet.panels.len()];
         let mut centres = vec![None; sheet.panels.len()];
         for seen in &fit.points {
             let flat = complex(seen.mark.flat(sheet));

@@ -13,7 +13,7 @@
 use crate::measured_points::{FittedPoint, MeasuredPoint};
 use crate::shape_path::{PathShape, ShapePath};
 use design::geometry::plane::{complex, point};
-use design::geometry::similarity::{Pair, Scale, Similarity};
+use design::geometry::similarity::{Correspondence, Scale, Similarity};
 
 /// Minimum number of points: four points are eight numbers, for at most five unknowns.
 pub const MIN_POINTS: usize = 4;
@@ -48,7 +48,7 @@ impl PathFit<'_> {
     }
 
     /// Predicted and measured positions of the points at a position of the path.
-    fn pairs(&self, position: f64) -> Vec<Pair> {
+    fn pairs(&self, position: f64) -> Vec<Correspondence> {
         let configuration = self.path.at(position).configuration;
         let pair = |point: &MeasuredPoint| {
             let predicted = point.mark.deployed(self.path.sheet, &configuration);
@@ -105,7 +105,7 @@ impl PathFit<'_> {
         let sigma = (squares(&pairs, fit.motion) / free).sqrt();
         let step = if position + STEP <= end { STEP } else { -STEP };
         let ahead = self.pairs(position + step);
-        let change: Vec<Pair> =
+        let change: Vec<Correspondence> =
             std::iter::zip(&pairs, &ahead).map(|(here, there)| [here[0], there[0]]).collect();
         let rigid = Similarity::least_squares(&change, self.scale)?;
         let speed = squares(&change, rigid).sqrt() / STEP;
@@ -119,7 +119,7 @@ impl PathFit<'_> {
 }
 
 /// Sum of the squared residuals of a motion (mm^2).
-fn squares(pairs: &[Pair], motion: Similarity) -> f64 {
+fn squares(pairs: &[Correspondence], motion: Similarity) -> f64 {
     pairs.iter().map(|pair| motion.residual(pair).powi(2)).sum()
 }
 

@@ -22,7 +22,7 @@ pub struct Chosen<'a> {
 }
 
 /// A design and its name for a person.
-type Named = (DesignVector, String);
+type NamedDesign = (DesignVector, String);
 
 impl Chosen<'_> {
     /// The scene, a design of its sheet and the name of the design: without `--design` the design
@@ -51,7 +51,7 @@ impl Chosen<'_> {
 
     /// The design that `--design` names, or the design of the scene's run; `None` if the scene has
     /// no run.
-    fn stored(&self, scene: &Scene) -> Result<Option<Named>> {
+    fn stored(&self, scene: &Scene) -> Result<Option<NamedDesign>> {
         Ok(match self.design {
             None => {
                 let path = scene.output().join(STATE_FILE);
@@ -63,7 +63,7 @@ impl Chosen<'_> {
     }
 
     /// The start design of the scene.
-    fn start(&self, scene: &Scene) -> Named {
+    fn start(&self, scene: &Scene) -> NamedDesign {
         let name = format!("start design of {}", self.scene.display());
         (scene.start(), name)
     }

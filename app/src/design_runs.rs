@@ -12,7 +12,7 @@ use std::{
 use support::{regular_file, table::Table, unread};
 
 /// One design run.
-pub struct Run {
+pub struct DesignRun {
     /// The scene file.
     pub file: PathBuf,
     /// The scene, with the seed and the folder of the run.
@@ -22,7 +22,7 @@ pub struct Run {
 }
 
 /// An error if two runs have the same folder.
-pub fn refuse_shared_folders(runs: &[Run]) -> Result<()> {
+pub fn refuse_shared_folders(runs: &[DesignRun]) -> Result<()> {
     let mut folders = BTreeSet::new();
     for run in runs {
         let folder = std::path::absolute(run.scene.output())?;
@@ -36,7 +36,7 @@ pub fn refuse_shared_folders(runs: &[Run]) -> Result<()> {
 }
 
 /// Writes `designs.csv` and `designs.md` to `folder`, and returns the table.
-pub fn compare(runs: &[Run], folder: &Path) -> Result<Table> {
+pub fn compare(runs: &[DesignRun], folder: &Path) -> Result<Table> {
     let mut table = Table::new(COLUMNS);
     for run in runs {
         table.row(cells(run)?);
@@ -60,7 +60,7 @@ const COLUMNS: [&str; 11] = [
 ];
 
 /// The cells of a run, from its report.
-fn cells(run: &Run) -> Result<[String; COLUMNS.len()]> {
+fn cells(run: &DesignRun) -> Result<[String; COLUMNS.len()]> {
     let folder = run.scene.output();
     let report = report(&folder.join("report.json"))?;
     let state = match (&run.failure, &report["ended"]) {

@@ -2,7 +2,7 @@
 
 use crate::progress::announce;
 use analysis::fit::{
-    fasteners::Held,
+    fasteners::Fastening,
     scene::{FittedScene, fitted},
 };
 use anyhow::{Result, ensure};
@@ -64,8 +64,8 @@ pub fn expected(fit: &FittedScene, thickness: f64) -> String {
 }
 
 /// How many fasteners hold the sheet, and why so many.
-fn fastened(held: &Held) -> String {
-    let Held { count, force, of_borne, peak_damage, margin, .. } = held;
+fn fastened(held: &Fastening) -> String {
+    let Fastening { count, force, of_borne, peak_damage, margin, .. } = held;
     let [off, borne] = [held.unevenness(), *of_borne].map(|part| 100.0 * part);
     let margin = margin.map_or(String::new(), |margin| {
         format!("; between them panels stay in the plane up to {margin:.1} times the forces")

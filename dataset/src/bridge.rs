@@ -63,12 +63,12 @@ impl Bridge {
         let damage = |value: fn(&HingeSample) -> Option<f64>| {
             let changes = pairs.iter().filter_map(|(row, reference)| {
                 let (terms, _) = unfitted.terms(row);
-                Some(Change::new(terms, value(&row.sample)?, value(reference)?))
+                Some(Observation::new(terms, value(&row.sample)?, value(reference)?))
             });
             least_squares([(changes.collect(), 1.0)])
         };
         let changes = pairs.iter().map(|(row, reference)| unfitted.energy_changes(row, reference));
-        let changes: Vec<[Change; 4]> = changes.collect();
+        let changes: Vec<[Observation; 4]> = changes.collect();
         let quantity = |i: usize| {
             let weight = if i == 0 { 1.0 } else { FORCE_WEIGHT };
             (changes.iter().map(|changes| changes[i]).collect(), weight)
@@ -84,15 +84,15 @@ impl Bridge {
     }
 
     /// How the coefficients of q change W, F_a, F_s and M of a row.
-    fn energy_changes(&self, row: &Row, reference: &HingeSample) -> [Change; 4] {
+    fn energy_changes(&self, row: &Row, reference: &HingeSample) -> [Observation; 4] {
         let (terms, slopes) = self.terms(row);
         let x = &row.sample;
         let force = |i: usize, value: f64, reference: f64| {
             let by = |k: usize| terms[k] * value + x.w * slopes[k][i];
-            Change { by: from_fn(by), missing: reference - value, reference }
+            Observation { by: from_fn(by), missing: reference - value, reference }
         };
         [
-            Change::new(terms, x.w, reference.w),
+            Observation::new(terms, x.w, reference.w),
             force(0, x.f_a, reference.f_a),
             force(1, x.f_s, reference.f_s),
             force(2, x.m_theta, reference.m_theta),
@@ -180,14 +180,14 @@ fn ranges<'a>(rows: impl Iterator<Item = &'a Row>) -> [[f64; 2]; 5] {
 
 /// What the coefficients c do to a value: it changes by c . by, and should by `missing`.
 #[derive(Clone, Copy)]
-struct Change {
+struct Observation {
     by: Coefficients,
     missing: f64,
     /// The value on the finer mesh.
     reference: f64,
 }
 
-impl Change {
+impl Observation {
     /// The change of a value that is multiplied by 1 + c . terms.
     fn new(terms: Coefficients, value: f64, reference: f64) -> Self {
         Self { by: terms.map(|term| term * value), missing: reference - value, reference }
@@ -196,7 +196,7 @@ impl Change {
 
 /// The c with which c . by = missing, by least squares, each equation scaled by its reference and
 /// with the weight of its quantity.
-fn least_squares(quantities: impl IntoIterator<Item = (Vec<Change>, f64)>) -> Coefficients {
+fn least_squares(quantities: impl IntoIterator<Item = (Vec<Observation>, f64)>) -> Coefficients {
     let mut normal = RIDGE * Mat::<f64>::identity(TERMS.len(), TERMS.len());
     let mut right = Mat::<f64>::zeros(TERMS.len(), 1);
     for (changes, weight) in quantities {

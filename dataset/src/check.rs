@@ -2,7 +2,7 @@
 
 use crate::database::Database;
 use crate::rows::Row;
-use crate::split::{Part, geometry, state};
+use crate::split::{Subset, geometry, state};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Maximum difference between the energy of a ray and the work of its forces, relative to the
@@ -53,7 +53,7 @@ impl Database {
     /// One row per held-out ray whose geometry is one of the training rays.
     fn leaked(&self) -> Vec<&Row> {
         let split = &self.manifest().split;
-        let trained = self.geometries(Part::Training);
+        let trained = self.geometries(Subset::Training);
         let mut jobs = BTreeSet::new();
         let held_out =
             |row: &&Row| split.validation.contains(&row.job) || split.test.contains(&row.job);

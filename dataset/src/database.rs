@@ -5,7 +5,7 @@ use crate::manifest::Manifest;
 use crate::parquet;
 use crate::rows::{Fidelity, Row};
 use crate::schema::{COLUMNS, DatasetError};
-use crate::split::{Part, SplitPlan, geometry};
+use crate::split::{SplitPlan, Subset, geometry};
 use std::collections::BTreeSet;
 use support::{Fault, fault};
 
@@ -50,7 +50,7 @@ impl Database {
     }
 
     /// The geometries of one part of the split.
-    pub(crate) fn geometries(&self, part: Part) -> BTreeSet<[i64; 2]> {
+    pub(crate) fn geometries(&self, part: Subset) -> BTreeSet<[i64; 2]> {
         let jobs = self.manifest.split.jobs(part);
         let rows = self.rows.iter().filter(|row| jobs.contains(&row.job));
         rows.map(geometry).collect()
@@ -85,7 +85,7 @@ impl Database {
     }
 
     /// The rows of one part of the split.
-    pub fn part(&self, part: Part) -> Vec<Row> {
+    pub fn part(&self, part: Subset) -> Vec<Row> {
         let jobs = self.manifest.split.jobs(part);
         let rows = self.rows.iter().filter(|row| jobs.contains(&row.job));
         rows.cloned().collect()

@@ -7,7 +7,7 @@
 use crate::database::Database;
 use crate::digest::{Digest, by_job_and_lambda};
 use crate::manifest::{FORMAT_VERSION, Manifest};
-use crate::parquet::{self, Hashing, Table};
+use crate::parquet::{self, Hashing, ParquetTable};
 use crate::rows::Row;
 use crate::schema::DatasetError;
 use crate::split::SplitPlan;
@@ -191,7 +191,7 @@ impl Collected {
         let mut digest = Digest::default();
         let mut contents = Contents::default();
         let mut hashing = Hashing::new(file.file());
-        let mut table = Table::new(&mut hashing).map_err(failed)?;
+        let mut table = ParquetTable::new(&mut hashing).map_err(failed)?;
         for ray in rays {
             let mut ray = digest.accepted(ray?);
             ray.sort_by(by_job_and_lambda);

@@ -263,10 +263,10 @@ impl Meshes {
 }
 
 /// A quantity of a row as text.
-type Quantity = (&'static str, fn(&Row) -> String);
+type RowQuantity = (&'static str, fn(&Row) -> String);
 
 /// The quantities that all rows have in common.
-const SHARED: [Quantity; 4] = [
+const SHARED: [RowQuantity; 4] = [
     ("material", |row| row.material.clone()),
     ("material_hash", |row| row.material_hash.clone()),
     ("kerf", |row| format!("{} mm", row.design.kerf)),
@@ -274,12 +274,12 @@ const SHARED: [Quantity; 4] = [
 ];
 
 /// The quantities that all rows of one mesh have in common.
-const SHARED_ON_A_MESH: [Quantity; 2] =
+const SHARED_ON_A_MESH: [RowQuantity; 2] =
     [("settings_hash", |row| row.settings_hash.clone()), ("tier", |row| row.tier.to_string())];
 
 /// Rejects a row that differs from `first` in one of the quantities, which are not features of the
 /// surrogate.
-fn refuse_other(first: &Row, row: &Row, quantities: &[Quantity]) -> Result<(), DatasetError> {
+fn refuse_other(first: &Row, row: &Row, quantities: &[RowQuantity]) -> Result<(), DatasetError> {
     let mut different = quantities.iter().filter(|(_, text)| text(first) != text(row));
     match different.next() {
         Some((column, text)) => Err(mixed(column, row, [first, row].map(text))),

@@ -9,13 +9,13 @@
 //! Reading a database:
 //!
 //! ```
-//! use dataset::{Database, Part};
+//! use dataset::{Database, Subset};
 //! use std::path::Path;
 //!
 //! # let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../data/polypropylene-3mm/hinges.parquet");
 //! let database = Database::read(&path)?;
 //! println!("{}", database.manifest().tier);
-//! for row in database.part(Part::Test) {
+//! for row in database.part(Subset::Test) {
 //!     assert!(row.sample.w.is_finite() && row.design.w_lig > 0.0);
 //! }
 //! # Ok::<_, dataset::DatasetError>(())
@@ -46,4 +46,4 @@ pub use manifest::{AcceptanceLimits, FORMAT_VERSION, FinerMesh, Manifest, Reject
 pub use database_files::Collected;
 pub use rows::{Fidelity, Row, with_mirrored};
 pub use schema::{COLUMNS, ColumnMeaning, DatasetError};
-pub use split::{Part, Split, SplitPlan};
+pub use split::{Split, SplitPlan, Subset};

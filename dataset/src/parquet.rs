@@ -13,13 +13,13 @@ use support::{caught_panic, fault, refuse};
 const GROUP: usize = 1 << 16;
 
 /// A Parquet file that is written while its rows arrive.
-pub(crate) struct Table<W: Write> {
+pub(crate) struct ParquetTable<W: Write> {
     writer: BatchedWriter<W>,
     /// The rows of the next group.
     waiting: Vec<Row>,
 }
 
-impl<W: Write> Table<W> {
+impl<W: Write> ParquetTable<W> {
     pub(crate) fn new(to: W) -> Result<Self, DatasetError> {
         let frame = schema::to_frame(&[])?;
         // Polars would declare texts as views, which Arrow's other libraries cannot filter or sort.
@@ -53,7 +53,7 @@ impl<W: Write> Table<W> {
 /// The bytes of the Parquet file of `rows`.
 pub(crate) fn encode(rows: &[Row]) -> Result<Vec<u8>, DatasetError> {
     let mut bytes = Vec::new();
-    let mut table = Table::new(&mut bytes)?;
+    let mut table = ParquetTable::new(&mut bytes)?;
     for group in rows.chunks(GROUP) {
         table.add(group.iter().cloned())?;
     }
@@ -151,7 +151,7 @@ mod tests {
         let rows = rows(7000);
         assert!(rows.len() > GROUP);
         let mut bytes = Hashing::new(Vec::new());
-        let mut table = Table::new(&mut bytes).unwrap();
+        let mut table = ParquetTable::new(&mut bytes).unwrap();
         for ray in rows.chunks(10) {
             table.add(ray.to_vec()).unwrap();
         }

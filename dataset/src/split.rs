@@ -38,7 +38,7 @@ impl Default for SplitPlan {
 
 /// A part of the database.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Part {
+pub enum Subset {
     /// Fits the weights.
     Training,
     /// Chooses the checkpoint.
@@ -114,11 +114,11 @@ impl Split {
     }
 
     /// The ids of the jobs of one part.
-    pub fn jobs(&self, part: Part) -> &BTreeSet<String> {
+    pub fn jobs(&self, part: Subset) -> &BTreeSet<String> {
         match part {
-            Part::Training => &self.training,
-            Part::Validation => &self.validation,
-            Part::Test => &self.test,
+            Subset::Training => &self.training,
+            Subset::Validation => &self.validation,
+            Subset::Test => &self.test,
         }
     }
 }
@@ -177,7 +177,7 @@ mod tests {
     fn parts_are_disjoint_and_complete_and_have_the_requested_fractions() {
         let split = deal(&rows(20), 7);
         let counts =
-            [Part::Training, Part::Validation, Part::Test].map(|part| split.jobs(part).len());
+            [Subset::Training, Subset::Validation, Subset::Test].map(|part| split.jobs(part).len());
         assert_eq!(counts, [10, 4, 6]);
         let all: BTreeSet<_> =
             split.training.iter().chain(&split.validation).chain(&split.test).collect();
@@ -199,7 +199,7 @@ mod tests {
         }
         let all: Vec<Row> = rows(10).into_iter().chain(images).collect();
         let split = deal(&all, 3);
-        for part in [Part::Training, Part::Validation, Part::Test] {
+        for part in [Subset::Training, Subset::Validation, Subset::Test] {
             for job in split.jobs(part) {
                 let twin = job.strip_suffix("-image").map_or(format!("{job}-image"), Into::into);
                 assert!(split.jobs(part).contains(&twin), "{job}");

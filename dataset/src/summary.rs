@@ -4,7 +4,7 @@ use crate::database::Database;
 use crate::manifest::{FinerMesh, Manifest};
 use crate::rows::Row;
 use crate::schema::COLUMNS;
-use crate::split::Part;
+use crate::split::Subset;
 use mesher::Tier;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
@@ -77,7 +77,7 @@ impl Contents {
         for (reason, count) in &manifest.rejected {
             writeln!(f, "rejected {count} rows: {reason}")?;
         }
-        let [training, validation, test] = [Part::Training, Part::Validation, Part::Test]
+        let [training, validation, test] = [Subset::Training, Subset::Validation, Subset::Test]
             .map(|part| manifest.split.jobs(part).len());
         writeln!(
             f,

@@ -60,7 +60,7 @@
 //!         solver,
 //!     })),
 //!     objective: Objective {
-//!         shape: Shape::new(circle.collect()),
+//!         shape: ShapeDistance::new(circle.collect()),
 //!         functionals: Vec::new(),
 //!         penalties: Vec::new(),
 //!     },
@@ -98,7 +98,7 @@ pub use hinge_law::{HingeLaw, LinearLaw, SurrogateLaw};
 pub use objective::{
     design_problem::{Deployment, DesignError, DesignProblem, Evaluation, Mechanics, Model},
     loss::Objective,
-    shape::Shape,
+    shape::ShapeDistance,
 };
 pub use optimise::{
     outer_loop::{Ended, SearchState, optimise},

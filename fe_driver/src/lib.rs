@@ -89,21 +89,21 @@ pub(crate) use sheet::sheet_nodes::{GRAVITY, STIFFNESS, SheetNodes};
 pub(crate) use sheet::sheet_output::{SheetFrame, SheetLayout};
 pub(crate) use sheet::sheet_problem::SECONDS;
 pub(crate) use sheet::sheet_response::states;
-pub(crate) use solve::attempts::{Event, Job, Workers, now};
+pub(crate) use solve::attempts::{Job, SolveEvent, Workers, now};
 pub(crate) use solve::solve_folder::{SolveState, host};
 
 pub use calculix::calculix_solver::{CalculiX, reached};
-pub use calculix::dat::{Frame, Increment, Layout, read_dat, read_sta};
+pub use calculix::dat::{Increment, Layout, OutputFrame, read_dat, read_sta};
 pub use calculix::deck::{WindowModel, deck};
 pub use calculix::deck_run::{CCX, Ccx, CcxRun};
 pub use campaign::campaign_folder::{Shard, finished_windows};
 pub use campaign::definition::{Campaign, JobPart};
-pub use campaign::run::{CollectedWindow, Progress, Restored, RunOptions, restore, run};
+pub use campaign::run::{CampaignProgress, CollectedWindow, Restored, RunOptions, restore, run};
 pub use campaign::sampling::RayBox;
 pub use campaign::spot_paths::{DrawnStates, SpotPath, random_paths};
-pub use campaign::status::{Plan, Status, Tally, Throughput, known_parts, plan, status};
+pub use campaign::status::{CampaignStatus, Plan, Tally, Throughput, known_parts, plan, status};
 pub use sheet::sheet_problem::{
-    Held, History, OutOfPlaneRestraint, Place, Pulled, SheetProblem, SheetSolve,
+    HeldPanel, History, OutOfPlaneRestraint, Place, Pulled, SheetProblem, SheetSolve,
 };
 pub use sheet::sheet_solver::sheet_reached;
 pub use sheet::sheet_states::{HingeState, PanelState, SheetState, SheetStates, SheetSurface};

@@ -11,7 +11,7 @@ pub(crate) struct Extrusion {
     pub elements: Vec<Vec<usize>>,
     /// Undeformed volume of each Gauss point of each element (mm^3).
     pub gauss_volumes: Vec<Vec<f64>>,
-    pub levels: Levels,
+    pub levels: NodeLevels,
 }
 
 impl Extrusion {
@@ -22,7 +22,7 @@ impl Extrusion {
         layers: usize,
         height: impl Fn(usize) -> f64,
     ) -> Self {
-        let levels = Levels::new(plane, layers);
+        let levels = NodeLevels::new(plane, layers);
         let nodes: Vec<_> = levels
             .nodes
             .iter()
@@ -50,14 +50,14 @@ impl Extrusion {
 /// Numbering of the extruded nodes, level by level from the bottom. Even levels contain every plane
 /// node; odd levels, in the middle of the layers, contain only the corner nodes.
 #[derive(Clone, Debug)]
-pub(crate) struct Levels {
+pub(crate) struct NodeLevels {
     /// Level and plane node of each extruded node.
     nodes: Vec<(usize, usize)>,
     /// The extruded node on each level above each plane node.
     ids: Vec<Vec<Option<usize>>>,
 }
 
-impl Levels {
+impl NodeLevels {
     fn new(plane: &PlaneMesh, layers: usize) -> Self {
         let mut is_corner = vec![false; plane.nodes.len()];
         for face in &plane.faces {

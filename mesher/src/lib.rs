@@ -36,7 +36,7 @@ mod sheet_shape;
 mod tier;
 mod window;
 
-pub(crate) use extrusion::{Extrusion, Levels};
+pub(crate) use extrusion::{Extrusion, NodeLevels};
 pub(crate) use mesh::{MAX_AREA_ERROR, check_elements, wrong_area};
 pub(crate) use msh::sides;
 pub(crate) use window::{cross, dot, minus, polar_angle, unit};
@@ -45,7 +45,7 @@ pub use element::ElementKind;
 pub use mesh::{MeshQuality, WindowMesh, plane_mesh_svg, vtk_grid};
 pub use meshing::{GMSH, Gmsh, MeshError, WindowShape};
 pub use msh::{Boundary, PlaneMesh, read_msh};
-pub use sheet_mesh::{Part, SheetMesh};
-pub use sheet_shape::{Frame, PanelShape, Panels, PlacedWindow, SheetShape};
+pub use sheet_mesh::{MeshPart, SheetMesh};
+pub use sheet_shape::{Frame, PanelPolygon, Panels, PlacedWindow, SheetShape};
 pub use tier::{Imperfection, MeshRecipe, PlaneRecipe, Structured, Tier, Unstructured};
 pub use window::{Side, Window};

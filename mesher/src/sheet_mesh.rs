@@ -1,8 +1,8 @@
 //! A sheet as solid elements: its plane mesh extruded to layers, with a bump at every hinge.
 
 use crate::{
-    Extrusion, Imperfection, Levels, MAX_AREA_ERROR, Panels, PlacedWindow, PlaneMesh, SheetShape,
-    Side, Window, check_elements, cross, dot, minus, unit, wrong_area,
+    Extrusion, Imperfection, MAX_AREA_ERROR, NodeLevels, Panels, PlacedWindow, PlaneMesh,
+    SheetShape, Side, Window, check_elements, cross, dot, minus, unit, wrong_area,
 };
 use std::iter::zip;
 use support::{Fault, Point};
@@ -17,7 +17,7 @@ const AT_LIGAMENT: f64 = 2.0;
 
 /// What a face or an element of a sheet belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Part {
+pub enum MeshPart {
     /// The part of a panel outside of all windows.
     Panel(usize),
     /// A window.
@@ -30,7 +30,7 @@ pub struct SheetMesh {
     /// The plane mesh that was extruded.
     pub plane: PlaneMesh,
     /// The part of each face, and of each element of each layer above it.
-    pub parts: Vec<Part>,
+    pub parts: Vec<MeshPart>,
     /// The plane nodes of each panel in increasing order; of a rigid panel on the arcs of its
     /// windows.
     pub panels: Vec<Vec<usize>>,
@@ -45,21 +45,21 @@ pub struct SheetMesh {
     pub bottom: Vec<usize>,
     /// Undeformed volume of each Gauss point of each element (mm^3).
     pub gauss_volumes: Vec<Vec<f64>>,
-    levels: Levels,
+    levels: NodeLevels,
 }
 
 impl SheetMesh {
     pub(crate) fn new(shape: &SheetShape, plane: PlaneMesh) -> Result<Self, Fault> {
         let panels = shape.panels.len();
-        let parts: Vec<Part> = (plane.surfaces.iter())
+        let parts: Vec<MeshPart> = (plane.surfaces.iter())
             .map(|tag| match (*tag as usize).saturating_sub(1) {
-                panel if panel < panels => Part::Panel(panel),
-                window => Part::Window(window - panels),
+                panel if panel < panels => MeshPart::Panel(panel),
+                window => MeshPart::Window(window - panels),
             })
             .collect();
         let mut height = vec![0.0; plane.nodes.len()];
         for (face, part) in zip(&plane.faces, &parts) {
-            if let Part::Window(window) = part {
+            if let MeshPart::Window(window) = part {
                 let window = &shape.windows[*window];
                 for node in face {
                     height[*node] = window.height(shape.thickness, plane.nodes[*node]);
@@ -89,19 +89,19 @@ impl SheetMesh {
         mesh.panels = (0..panels)
             .map(|panel| match shape.model {
                 Panels::Rigid => mesh.arcs(shape, panel),
-                Panels::Meshed => mesh.plane_nodes(Part::Panel(panel)),
+                Panels::Meshed => mesh.plane_nodes(MeshPart::Panel(panel)),
             })
             .collect();
         Ok(mesh)
     }
 
     /// The part of an element.
-    pub fn part(&self, element: usize) -> Part {
+    pub fn part(&self, element: usize) -> MeshPart {
         self.parts[element % self.parts.len()]
     }
 
     /// The plane nodes of a part, in increasing order.
-    pub fn plane_nodes(&self, part: Part) -> Vec<usize> {
+    pub fn plane_nodes(&self, part: MeshPart) -> Vec<usize> {
         let faces = zip(&self.plane.faces, &self.parts);
         let mut nodes: Vec<usize> = faces
             .filter(|(_, of)| **of == part)
@@ -124,12 +124,15 @@ impl SheetMesh {
         {
             let sides = zip(Side::BOTH, panels).filter(|(_, (of, _))| *of == panel);
             for (side, _) in sides {
-                nodes.extend(self.plane_nodes(Part::Window(number)).into_iter().filter(|node| {
-                    let local = frame.local(self.plane.nodes[*node]);
-                    let [x, y] = local;
-                    let across = dot(minus(local, design.tip()), Window(design).normal());
-                    across * side.sign() > 0.0 && (x.hypot(y) / design.r_win - 1.0).abs() < ON_RIM
-                }));
+                nodes.extend(self.plane_nodes(MeshPart::Window(number)).into_iter().filter(
+                    |node| {
+                        let local = frame.local(self.plane.nodes[*node]);
+                        let [x, y] = local;
+                        let across = dot(minus(local, design.tip()), Window(design).normal());
+                        across * side.sign() > 0.0
+                            && (x.hypot(y) / design.r_win - 1.0).abs() < ON_RIM
+                    },
+                ));
             }
         }
         nodes.sort_unstable();
@@ -164,7 +167,7 @@ impl SheetMesh {
     }
 
     /// The corner node of a part's faces that is nearest to a point.
-    pub fn nearest(&self, part: Part, point: Point) -> Option<usize> {
+    pub fn nearest(&self, part: MeshPart, point: Point) -> Option<usize> {
         let distance = |node: &usize| {
             let [x, y] = minus(self.plane.nodes[*node], point);
             x.hypot(y)

@@ -34,7 +34,7 @@ pub struct SheetShape {
     /// How panels are modelled.
     pub model: Panels,
     /// The panels.
-    pub panels: Vec<PanelShape>,
+    pub panels: Vec<PanelPolygon>,
     /// The windows of the hinges.
     pub windows: Vec<PlacedWindow>,
     /// Plane mesh of the windows.
@@ -51,7 +51,7 @@ pub struct SheetShape {
 
 /// A panel in the flat sheet.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct PanelShape {
+pub struct PanelPolygon {
     /// Where its finished edges meet, counter-clockwise (mm).
     pub corners: Vec<Point>,
     /// Points at which the mesh has nodes (mm), inside of the panel or on its finished edges.
@@ -101,7 +101,7 @@ impl SheetShape {
     }
 }
 
-impl PanelShape {
+impl PanelPolygon {
     /// The ends of the edge that begins at a corner.
     pub(crate) fn edge(&self, corner: usize) -> [Point; 2] {
         [self.corners[corner], self.corners[(corner + 1) % self.corners.len()]]

@@ -29,7 +29,7 @@ pub struct MeasurementReport {
     pub points: usize,
     /// Position of the design's origin in the frame of the measurement (mm), rotation (deg) and
     /// scale.
-    pub motion: Motion,
+    pub motion: Alignment,
     /// Agreement at the end of the path: full load, or the full stroke.
     pub full: Agreement,
     /// Agreement at the state of the path that fits best.
@@ -53,7 +53,7 @@ pub struct MeasurementReport {
 
 /// The rigid motion from the design to the measurement.
 #[derive(Clone, Copy, Debug, Serialize)]
-pub struct Motion {
+pub struct Alignment {
     /// Position of the design's origin (mm, or pixels if the points are in pixels).
     pub origin: [f64; 2],
     /// Rotation (deg).
@@ -100,7 +100,7 @@ impl MeasurementReport {
             title: title.to_owned(),
             sheet_size: sheet.outline.size(),
             points: best.points.len(),
-            motion: Motion {
+            motion: Alignment {
                 origin: point(best.motion.of(c64::ZERO)),
                 rotation_deg: best.motion.rotation().to_degrees(),
                 scale: best.motion.scale(),

@@ -30,7 +30,7 @@ const OF_RUN: &str = include_str!("run_page/page.js");
 
 /// What a page adds to the view of a sheet.
 #[derive(Default)]
-pub struct Page<'a> {
+pub struct PageContent<'a> {
     /// Its title.
     pub title: &'a str,
     /// What it may connect to, as a directive of its content security policy.
@@ -47,12 +47,16 @@ pub struct Page<'a> {
 
 pub(super) fn run_page(scene: &Scene, designed: &Designed, report: &Report) -> String {
     let data = page_data(scene, designed, report).to_string();
-    let page =
-        Page { title: &report.title, scripts: OF_RUN.to_owned(), data: &data, ..Page::default() };
+    let page = PageContent {
+        title: &report.title,
+        scripts: OF_RUN.to_owned(),
+        data: &data,
+        ..PageContent::default()
+    };
     page.to_html()
 }
 
-impl Page<'_> {
+impl PageContent<'_> {
     /// The text of the page.
     pub fn to_html(&self) -> String {
         let filled = |marker: &str| match marker {

@@ -41,7 +41,7 @@ pub(crate) enum DatasetCommand {
         #[arg(long)]
         replace: bool,
     },
-    Compare(compare::CompareCommand),
+    Compare(compare::CompareRaysCommand),
 }
 
 impl DatasetCommand {

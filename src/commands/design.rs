@@ -5,13 +5,13 @@ mod by_elements;
 
 use crate::ui::{
     self, interrupt, processors,
-    with_unit::{self, Accuracy},
+    with_unit::{self, CornerTolerance},
 };
 use analysis::refinement::{inverse_design, refine, search};
 use anyhow::{Result, bail, ensure};
 use app::{
     design::{ended, hold, write_run},
-    design_runs::{Run, compare, refuse_shared_folders},
+    design_runs::{DesignRun, compare, refuse_shared_folders},
     failure::Unfinished,
     output_file,
     progress::Progress,
@@ -57,7 +57,7 @@ pub struct DesignCommand {
     /// difference to the next finer level is larger, that level, `standard` and then `fine`,
     /// continues from the design. The next finer level evaluates the result
     #[arg(long, value_name = "ACCURACY", value_parser = with_unit::accuracy, conflicts_with_all = ["level", "steps"])]
-    within: Option<Accuracy>,
+    within: Option<CornerTolerance>,
     /// Run folder, instead of the scene's. Of several runs: the folder of the table, designs.md and
     /// designs.csv, and of the runs, each in a folder with the name of its scene [default of the
     /// table: runs/designs]
@@ -103,7 +103,7 @@ impl DesignCommand {
     }
 
     /// All runs; with `out` in folders there.
-    fn runs(&self, out: Option<&Path>) -> Result<Vec<Run>> {
+    fn runs(&self, out: Option<&Path>) -> Result<Vec<DesignRun>> {
         let mut runs = Vec::new();
         for file in &self.scenes {
             for seed in 0..self.seeds {
@@ -127,7 +127,7 @@ impl DesignCommand {
                     file.display()
                 );
                 let (file, failure) = (file.clone(), None);
-                runs.push(Run { file, scene, failure });
+                runs.push(DesignRun { file, scene, failure });
             }
         }
         refuse_shared_folders(&runs)?;
@@ -135,7 +135,7 @@ impl DesignCommand {
     }
 
     /// Designs the runs, as many at a time as there are processors, and compares them.
-    fn run_many(&self, mut runs: Vec<Run>) -> Result<()> {
+    fn run_many(&self, mut runs: Vec<DesignRun>) -> Result<()> {
         let stop = interrupt::stop_flag()?;
         let folder = self.out.clone().unwrap_or("runs/designs".into());
         output_file::create_folder(&folder)?;
@@ -169,7 +169,7 @@ impl DesignCommand {
         bar.finish();
         let listed = compare(&runs, &folder)?;
         println!("{listed}\nwritten to {}", folder.display());
-        let failure = |run: &Run| {
+        let failure = |run: &DesignRun| {
             let why = run.failure.as_ref()?;
             Some(format!("\n{}: {why}", run.scene.output().display()))
         };
@@ -192,8 +192,8 @@ impl DesignCommand {
             (None, None) => inverse_design(scene, stop, progress)?,
             (Some(accuracy), _) => {
                 let tolerance = match accuracy {
-                    Accuracy::Length(mm) => mm,
-                    Accuracy::Part(part) => part * scene.config.sheet.outline().size(),
+                    CornerTolerance::Length(mm) => mm,
+                    CornerTolerance::Part(part) => part * scene.config.sheet.outline().size(),
                 };
                 refine(scene, tolerance, stop, progress)?
             }

@@ -15,7 +15,7 @@ const COLUMNS: [&str; 7] = ["panel", "corner", "x", "y", "unit", "flat_x_mm", "f
 
 /// Unit of measured lengths.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum Unit {
+enum LengthUnit {
     /// Millimetres.
     Mm,
     /// Centimetres.
@@ -31,10 +31,10 @@ enum Unit {
 pub(super) struct PointsFile {
     /// Measured points in mm, or in pixels.
     pub points: Vec<MeasuredPoint>,
-    unit: Unit,
+    unit: LengthUnit,
 }
 
-impl Unit {
+impl LengthUnit {
     /// Length of the unit (mm); 1 for a pixel.
     fn length(self) -> f64 {
         match self {
@@ -52,8 +52,8 @@ impl PointsFile {
         let NamedTable { head, rows } =
             NamedTable::read(path).map_err(|error| anyhow!("cannot read {error}"))?;
         let located = |line: u64| format!("{}:{line}", path.display());
-        let columns = Columns::new(&head.1).with_context(|| located(head.0))?;
-        let mut file = Self { points: Vec::new(), unit: Unit::Mm };
+        let columns = PointColumns::new(&head.1).with_context(|| located(head.0))?;
+        let mut file = Self { points: Vec::new(), unit: LengthUnit::Mm };
         let mut lines = HashMap::new();
         for (line, row) in rows {
             let Some((mut point, own)) = columns.point(&row).with_context(|| located(line))? else {
@@ -70,7 +70,7 @@ impl PointsFile {
                 bail!("{}: {mark} is measured twice, first in line {first}", located(line));
             }
             let own = own.unwrap_or(file.unit);
-            let pixels = |unit: Unit| unit == Unit::Px;
+            let pixels = |unit: LengthUnit| unit == LengthUnit::Px;
             if !file.points.is_empty() && pixels(own) != pixels(file.unit) {
                 bail!("{}: column `unit`: pixels and lengths are mixed", located(line));
             }
@@ -87,29 +87,29 @@ impl PointsFile {
     /// Whether the scale of the points is known: the scale of pixels is not.
     pub(super) fn scale(&self) -> Scale {
         match self.unit {
-            Unit::Px => Scale::Free,
+            LengthUnit::Px => Scale::Free,
             _ => Scale::Given,
         }
     }
 }
 
 /// The unit of this name in a column.
-fn unit(column: &str, name: &str) -> Result<Unit> {
-    let known = Unit::from_str(name, true);
+fn unit(column: &str, name: &str) -> Result<LengthUnit> {
+    let known = LengthUnit::from_str(name, true);
     known.map_err(|_| anyhow!("column `{column}`: `{name}` is none of mm, cm, m, px"))
 }
 
 /// Places of the columns in a row.
-struct Columns {
+struct PointColumns {
     panel: usize,
     corner: Option<usize>,
     position: [usize; 2],
     unit: Option<usize>,
     /// The unit behind the name `x`.
-    unit_of_x: Option<Unit>,
+    unit_of_x: Option<LengthUnit>,
 }
 
-impl Columns {
+impl PointColumns {
     fn new(header: &csv::StringRecord) -> Result<Self> {
         let (names, units): (Vec<String>, Vec<String>) = header.iter().map(name_and_unit).unzip();
         for name in names.iter().map(String::as_str) {
@@ -141,7 +141,10 @@ impl Columns {
     }
 
     /// The point of a row and its unit; `None` if the point was not measured, with empty x and y.
-    fn point(&self, row: &csv::StringRecord) -> Result<Option<(MeasuredPoint, Option<Unit>)>> {
+    fn point(
+        &self,
+        row: &csv::StringRecord,
+    ) -> Result<Option<(MeasuredPoint, Option<LengthUnit>)>> {
         let text = |column: usize| row.get(column).unwrap_or_default();
         if self.position.iter().all(|&column| text(column).is_empty()) {
             return Ok(None);

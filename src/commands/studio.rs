@@ -9,7 +9,7 @@ use std::{
     path::{Path, PathBuf},
     sync::Arc,
 };
-use studio::{engine::Engine, event::Post, project::Project, server::Studio, static_page};
+use studio::{engine::Engine, event::Post, project::Project, server::StudioServer, static_page};
 
 /// Draw a sheet in the browser, watch it open, and design it
 ///
@@ -63,7 +63,7 @@ impl StudioCommand {
         let opened = opened.map(|path| self.opened(path, &projects)).transpose()?;
         let stop = interrupt::stop_flag()?;
         let post = Arc::new(Post::default());
-        let studio = Arc::new(Studio::listen(
+        let studio = Arc::new(StudioServer::listen(
             self.port,
             format!("{:032x}", random::<u128>()),
             Arc::clone(&post),

@@ -7,7 +7,7 @@ use std::time::Duration;
 
 /// How accurately panel corners are to be known.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Accuracy {
+pub(crate) enum CornerTolerance {
     /// A length (mm).
     Length(f64),
     /// A part of the longer side of the flat sheet.
@@ -15,12 +15,12 @@ pub(crate) enum Accuracy {
 }
 
 /// An accuracy such as `0.5mm` or `0.2%`.
-pub(crate) fn accuracy(text: &str) -> Result<Accuracy, String> {
+pub(crate) fn accuracy(text: &str) -> Result<CornerTolerance, String> {
     let length = text.strip_suffix("mm");
     let length = length.and_then(|number| number.trim().parse::<f64>().ok());
     match (length, percent(text)) {
-        (Some(mm), _) if mm > 0.0 && mm.is_finite() => Ok(Accuracy::Length(mm)),
-        (_, Ok(percent)) => Ok(Accuracy::Part(percent / 100.0)),
+        (Some(mm), _) if mm > 0.0 && mm.is_finite() => Ok(CornerTolerance::Length(mm)),
+        (_, Ok(percent)) => Ok(CornerTolerance::Part(percent / 100.0)),
         _ => Err(
             "expected a length or a percentage of the longer side of the sheet, for example 0.5mm or 0.2%"
                 .into(),
@@ -68,8 +68,8 @@ mod tests {
         for wrong in ["1", "0.01", "0%", "101%", "%", "nan%"] {
             assert!(percent(wrong).is_err(), "{wrong}");
         }
-        assert_eq!(accuracy("0.5mm"), Ok(Accuracy::Length(0.5)));
-        assert_eq!(accuracy("0.5%"), Ok(Accuracy::Part(0.005)));
+        assert_eq!(accuracy("0.5mm"), Ok(CornerTolerance::Length(0.5)));
+        assert_eq!(accuracy("0.5%"), Ok(CornerTolerance::Part(0.005)));
         for wrong in ["0.5", "0mm", "-1mm", "nanmm", "1 cm", "0%"] {
             assert!(accuracy(wrong).is_err(), "{wrong}");
         }

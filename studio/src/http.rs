@@ -17,7 +17,7 @@ const MOST_HEAD: usize = 16 << 10;
 const PATIENCE: Duration = Duration::from_secs(10);
 
 /// What precedes the body of a request, and a stream from which the body is read.
-pub(crate) struct Request<'a> {
+pub(crate) struct HttpRequest<'a> {
     pub method: String,
     /// The path with the query.
     pub target: String,
@@ -53,7 +53,7 @@ impl Read for Arriving<'_> {
     }
 }
 
-impl<'a> Request<'a> {
+impl<'a> HttpRequest<'a> {
     /// Reads what precedes the body; `None` if no request arrives in time.
     pub(crate) fn read(stream: &'a TcpStream) -> io::Result<Option<Self>> {
         stream.set_write_timeout(Some(PATIENCE))?;

@@ -26,11 +26,11 @@ pub(crate) struct Opened {
     /// The last equilibrium, from which a draft starts.
     pub known: Option<WarmStart>,
     /// The runs, each in a folder of its own.
-    pub runs: Vec<Run>,
+    pub runs: Vec<OpenedRun>,
 }
 
 /// A run whose best design is shown while the scene has the keys `adopted`.
-pub(crate) struct Run {
+pub(crate) struct OpenedRun {
     pub scene: Scene,
     pub adopted: SceneConfig,
     pub ended: Ended,
@@ -53,18 +53,18 @@ impl Opened {
     }
 
     /// The run whose best design is shown.
-    pub(crate) fn run(&self) -> Option<&Run> {
+    pub(crate) fn run(&self) -> Option<&OpenedRun> {
         let mut runs = self.runs.iter();
         runs.find(|run| run.adopted == self.scene.config)
     }
 
-    pub(crate) fn run_mut(&mut self) -> Option<&mut Run> {
+    pub(crate) fn run_mut(&mut self) -> Option<&mut OpenedRun> {
         let mut runs = self.runs.iter_mut();
         runs.find(|run| run.adopted == self.scene.config)
     }
 }
 
-impl Run {
+impl OpenedRun {
     pub(crate) fn new(scene: Scene, adopted: SceneConfig, ended: Ended) -> Self {
         Self { scene, adopted, ended, verdicts: BTreeMap::new() }
     }

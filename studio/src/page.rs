@@ -1,6 +1,6 @@
 //! The page of the studio.
 
-use output::run_page::Page;
+use output::run_page::PageContent;
 
 /// How the page reaches the engine.
 #[derive(Clone, Copy)]
@@ -19,7 +19,7 @@ pub(crate) fn page(connection: Connection) -> String {
             ("; connect-src 'self' blob:; worker-src 'self'", include_str!("page/in_page.js"))
         }
     };
-    let page = Page {
+    let page = PageContent {
         title: "kirigami studio",
         connections,
         controls: include_str!("page/controls.html"),

@@ -18,7 +18,7 @@
 use crate::{
     engine::Engine,
     event::Post,
-    http::{Answer, Request},
+    http::{Answer, HttpRequest},
     page::{Connection, page},
 };
 use anyhow::{Context, Result};
@@ -42,14 +42,14 @@ const ALIVE: Duration = Duration::from_secs(10);
 const NAMES: [&str; 2] = ["127.0.0.1", "localhost"];
 
 /// A server on a port of 127.0.0.1.
-pub struct Studio {
+pub struct StudioServer {
     listener: TcpListener,
     port: u16,
     token: String,
     post: Arc<Post>,
 }
 
-impl Studio {
+impl StudioServer {
     /// Listens on a port, or on a free one if that is 0.
     pub fn listen(port: u16, token: String, post: Arc<Post>) -> Result<Self> {
         let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port));
@@ -94,7 +94,7 @@ impl Studio {
     }
 
     fn answer(&self, stream: &TcpStream, engine: &Engine) -> io::Result<()> {
-        let Some(request) = Request::read(stream)? else {
+        let Some(request) = HttpRequest::read(stream)? else {
             return Ok(());
         };
         let (path, query) = request.target.split_once('?').unwrap_or((&request.target, ""));
@@ -155,7 +155,7 @@ fn send(post: &Post, mut page: &TcpStream) -> io::Result<()> {
 }
 
 /// Hands the request in a body to the engine.
-fn asked(request: Request, engine: &Engine) -> Result<Answer, Answer> {
+fn asked(request: HttpRequest, engine: &Engine) -> Result<Answer, Answer> {
     let asked = serde_json::from_slice(&request.body()?);
     engine.ask(asked.map_err(|error| Answer::refusal(400, &error.to_string()))?);
     Ok(Answer::refusal(204, ""))

@@ -5,7 +5,7 @@ use crate::{
     draft::{Steps, draft, draft_data},
     event::{Event, Kind, locked},
     full_analysis::{FullAnalysis, Listener, Resting, refusal, run_name, shown},
-    opened::{Opened, Run, fitted_to, told},
+    opened::{Opened, OpenedRun, fitted_to, told},
     panels::with_panels,
     project::Project,
     request::{Change, Drawing, Files, NewSheet, Request},
@@ -77,7 +77,7 @@ impl Session {
     pub(crate) fn open(&mut self, project: Project, scene: Scene) {
         self.analysis.stop();
         let run = project.run_of(&scene);
-        let run = run.map(|(of, ended)| Run::new(of, scene.config.clone(), ended));
+        let run = run.map(|(of, ended)| OpenedRun::new(of, scene.config.clone(), ended));
         let file = project.scene_file();
         let command = format!("kirigami design {}", shell_word(&file));
         self.tell(Kind::Sheet, &json!({ "file": file, "command": command }));
@@ -353,7 +353,7 @@ impl Session {
         // A run that went on is no longer what it was at its pause.
         let folder = scene.output();
         sheet.runs.retain(|run| run.scene.output() != folder);
-        sheet.runs.push(Run::new(scene, adopted, designed.ended));
+        sheet.runs.push(OpenedRun::new(scene, adopted, designed.ended));
         self.commit()?;
         self.at_rest = true;
         self.list_files()?;

@@ -7,11 +7,11 @@ use std::fmt::{self, Display};
 /// page.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Document {
-    parts: Vec<Part>,
+    parts: Vec<DocumentBlock>,
 }
 
 #[derive(Clone, Debug, PartialEq)]
-enum Part {
+enum DocumentBlock {
     /// A title, with its depth from 1.
     Heading(usize, String),
     Text(String),
@@ -22,24 +22,24 @@ enum Part {
 impl Document {
     /// Adds the title of the report, or of one of its sections.
     pub fn heading(&mut self, depth: usize, title: impl Into<String>) {
-        self.parts.push(Part::Heading(depth, title.into()));
+        self.parts.push(DocumentBlock::Heading(depth, title.into()));
     }
 
     /// Adds a paragraph.
     pub fn text(&mut self, text: impl Into<String>) {
-        self.parts.push(Part::Text(text.into()));
+        self.parts.push(DocumentBlock::Text(text.into()));
     }
 
     /// Adds a table.
     pub fn table(&mut self, table: Table) {
-        self.parts.push(Part::Table(table));
+        self.parts.push(DocumentBlock::Table(table));
     }
 
     /// Adds a list, unless it has no items.
     pub fn list(&mut self, items: impl IntoIterator<Item = impl Display>) {
         let items: Vec<String> = items.into_iter().map(|item| item.to_string()).collect();
         if !items.is_empty() {
-            self.parts.push(Part::List(items));
+            self.parts.push(DocumentBlock::List(items));
         }
     }
 
@@ -51,14 +51,14 @@ impl Document {
     /// The report as a page in Markdown.
     pub fn markdown(&self) -> String {
         self.written(|part| match part {
-            Part::Heading(depth, title) => format!("{} {title}", "#".repeat(*depth)),
-            Part::Text(text) => text.clone(),
-            Part::Table(table) => table.markdown().trim_end().to_owned(),
-            Part::List(items) => list("*", items),
+            DocumentBlock::Heading(depth, title) => format!("{} {title}", "#".repeat(*depth)),
+            DocumentBlock::Text(text) => text.clone(),
+            DocumentBlock::Table(table) => table.markdown().trim_end().to_owned(),
+            DocumentBlock::List(items) => list("*", items),
         })
     }
 
-    fn written(&self, part: impl Fn(&Part) -> String) -> String {
+    fn written(&self, part: impl Fn(&DocumentBlock) -> String) -> String {
         let parts: Vec<String> = self.parts.iter().map(part).collect();
         parts.join("\n\n") + "\n"
     }
@@ -67,7 +67,7 @@ impl Document {
 /// A report that is a table alone.
 impl From<Table> for Document {
     fn from(table: Table) -> Self {
-        Self { parts: vec![Part::Table(table)] }
+        Self { parts: vec![DocumentBlock::Table(table)] }
     }
 }
 
@@ -79,9 +79,9 @@ fn list(mark: &str, items: &[String]) -> String {
 impl Display for Document {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         f.write_str(&self.written(|part| match part {
-            Part::Heading(_, text) | Part::Text(text) => text.clone(),
-            Part::Table(table) => table.to_string(),
-            Part::List(items) => list("-", items),
+            DocumentBlock::Heading(_, text) | DocumentBlock::Text(text) => text.clone(),
+            DocumentBlock::Table(table) => table.to_string(),
+            DocumentBlock::List(items) => list("-", items),
         }))
     }
 }

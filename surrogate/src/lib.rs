@@ -56,6 +56,6 @@ pub use energy::Prepared;
 pub use ensemble::mean_and_variance;
 pub use features::{FEATURE_NAMES, HingeEnergy, Order, Standardisation, feature_names, features};
 pub use model::{Layers, Surrogate};
-pub use network::{Layer, Network, Tensor};
+pub use network::{DenseLayer, Network, Tensor};
 pub use springback::{Springback, SpringbackErrors};
 pub use tanh::tanh_in_place;

@@ -29,7 +29,7 @@
 //! ```
 
 use crate::features::FEATURES;
-use crate::network::{Affine, DIFFERENCE, Network, SUM};
+use crate::network::{DIFFERENCE, Network, PairedAffine, SUM};
 use crate::tanh::tanh;
 use faer::linalg::matmul::matmul;
 use faer::{Accum, Mat, MatMut, MatRef, Par};
@@ -129,7 +129,7 @@ impl Passes {
     }
 
     /// Evaluates the first layer without its bias; its tangents are the columns of its weight.
-    fn enter(&mut self, first: &Affine) {
+    fn enter(&mut self, first: &PairedAffine) {
         let (n, rows) = (self.n, self.rows());
         multiply(first, &self.inputs, n, &mut self.adjoint);
         self.output.resize(rows * first.bias.len(), 0.0);
@@ -199,14 +199,19 @@ impl Passes {
 }
 
 /// Multiplies `inputs` by the weights of a layer.
-fn multiply(affine: &Affine, inputs: &[f64], rows: usize, product: &mut Vec<f64>) {
+fn multiply(affine: &PairedAffine, inputs: &[f64], rows: usize, product: &mut Vec<f64>) {
     let weight = |to: usize, from: usize| affine.weights[to][from].as_ref().map(Mat::transpose);
     multiply_pairs(weight, inputs, rows, affine.outputs(), product);
 }
 
 /// Multiplies `adjoint` by the transposed weights of a layer, which gives df/dh of the units of the
 /// preceding layer.
-fn multiply_transposed(affine: &Affine, adjoint: &[f64], rows: usize, product: &mut Vec<f64>) {
+fn multiply_transposed(
+    affine: &PairedAffine,
+    adjoint: &[f64],
+    rows: usize,
+    product: &mut Vec<f64>,
+) {
     let weight = |to: usize, from: usize| affine.weights[from][to].as_ref().map(Mat::as_ref);
     multiply_pairs(weight, adjoint, rows, affine.inputs, product);
 }

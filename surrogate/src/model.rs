@@ -4,7 +4,7 @@ use crate::card::{Card, SpotCheck, TestErrors};
 use crate::damage::{self, HingeDamage};
 use crate::energy::{self, Prepared};
 use crate::features::{HingeEnergy, Order};
-use crate::network::{Layer, Network, missing};
+use crate::network::{DenseLayer, Network, missing};
 use crate::reference_ligament;
 use hinge::{
     HingeDeformation, HingeDesign, HingeSample, NetLigament, Regime, SheetMaterial, TrainingDomain,
@@ -27,17 +27,17 @@ pub struct Surrogate {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Layers {
     /// The embedding chi.
-    pub chi: Vec<Layer>,
+    pub chi: Vec<DenseLayer>,
     /// The damage head chi_D.
-    pub chi_d: Vec<Layer>,
+    pub chi_d: Vec<DenseLayer>,
     /// The head of D_peak.
-    pub chi_p: Option<Vec<Layer>>,
+    pub chi_p: Option<Vec<DenseLayer>>,
 }
 
 impl Layers {
     /// Number of units of each layer: of chi, and of the hidden layers of each damage head.
     pub fn widths(&self) -> Vec<Vec<usize>> {
-        let units = |layers: &[Layer]| -> Vec<usize> {
+        let units = |layers: &[DenseLayer]| -> Vec<usize> {
             layers.iter().map(|layer| layer.bias.values.len()).collect()
         };
         let heads = std::iter::once(&self.chi_d).chain(&self.chi_p);

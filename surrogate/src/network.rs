@@ -16,7 +16,7 @@ pub struct Tensor {
 
 /// One affine map y = weight x + bias; `weight` is (outputs, inputs), `bias` (outputs).
 #[derive(Clone, Debug, PartialEq)]
-pub struct Layer {
+pub struct DenseLayer {
     /// The matrix, of shape (outputs, inputs).
     pub weight: Tensor,
     /// The constant term, of shape (outputs).
@@ -28,14 +28,14 @@ pub struct Layer {
 #[derive(Clone, Debug)]
 pub struct Network {
     /// Layers as in the weight file: the input of the first layer is standardised.
-    layers: Vec<Layer>,
+    layers: Vec<DenseLayer>,
     /// Layers as evaluated: the standardisation is folded into the first layer.
-    pub(crate) affine: Vec<Affine>,
+    pub(crate) affine: Vec<PairedAffine>,
 }
 
 /// An affine map between the sums and differences of pairs of units: see [`crate::mlp_kernels`].
 #[derive(Clone, Debug)]
-pub(crate) struct Affine {
+pub(crate) struct PairedAffine {
     /// Blocks by [`SUM`] and [`DIFFERENCE`] of outputs and inputs; `None` if zero. In a network with
     /// mirror symmetry no sum depends on a difference, and no difference on a sum.
     pub weights: [[Option<Mat<f64>>; 2]; 2],
@@ -45,7 +45,7 @@ pub(crate) struct Affine {
     pub bias: Vec<f64>,
 }
 
-/// Positions in [`Affine::weights`].
+/// Positions in [`PairedAffine::weights`].
 pub(crate) const SUM: usize = 0;
 pub(crate) const DIFFERENCE: usize = 1;
 
@@ -54,7 +54,7 @@ impl Network {
     /// number of outputs.
     pub(crate) fn new(
         name: &str,
-        layers: Vec<Layer>,
+        layers: Vec<DenseLayer>,
         outputs: Option<usize>,
         standardisation: &Standardisation,
     ) -> Result<Self, Fault> {
@@ -62,7 +62,7 @@ impl Network {
             return Err(missing(&format!("{name}.0.weight")));
         }
         let mut inputs = standardisation.mean.len();
-        for (index, Layer { weight, bias }) in layers.iter().enumerate() {
+        for (index, DenseLayer { weight, bias }) in layers.iter().enumerate() {
             let last = index + 1 == layers.len();
             let required = if last { outputs } else { None };
             weight.check(&format!("{name}.{index}.weight"), &[required, Some(inputs)])?;
@@ -71,15 +71,15 @@ impl Network {
             inputs = bias.values.len();
         }
         let last = layers.len() - 1;
-        let affine = |(index, layer): (usize, &Layer)| {
+        let affine = |(index, layer): (usize, &DenseLayer)| {
             let standardisation = (index == 0).then_some(standardisation);
-            Affine::new(layer, standardisation, index == last)
+            PairedAffine::new(layer, standardisation, index == last)
         };
         Ok(Self { affine: layers.iter().enumerate().map(affine).collect(), layers })
     }
 
     /// The layers as in the weight file.
-    pub fn layers(&self) -> &[Layer] {
+    pub fn layers(&self) -> &[DenseLayer] {
         &self.layers
     }
 
@@ -93,9 +93,9 @@ impl Network {
     }
 }
 
-impl Affine {
+impl PairedAffine {
     /// A layer of a network; the first one has the standardisation of its inputs.
-    fn new(layer: &Layer, first: Option<&Standardisation>, is_last: bool) -> Self {
+    fn new(layer: &DenseLayer, first: Option<&Standardisation>, is_last: bool) -> Self {
         let (outputs, inputs) = (layer.bias.values.len(), layer.weight.shape[1]);
         let mut weight = Mat::from_fn(outputs, inputs, |i, j| layer.weight.values[i * inputs + j]);
         let mut bias = Mat::from_fn(outputs, 1, |i, _| layer.bias.values[i]);

@@ -15,7 +15,7 @@
 use crate::card::{Card, FORMAT_VERSION};
 use crate::features::Standardisation;
 use crate::model::{Layers, Surrogate};
-use crate::network::{Layer, Tensor, missing, other_shape};
+use crate::network::{DenseLayer, Tensor, missing, other_shape};
 use safetensors::tensor::TensorView;
 use safetensors::{Dtype, SafeTensors};
 use std::collections::BTreeMap;
@@ -49,7 +49,7 @@ impl Surrogate {
         let Layers { chi, chi_d, chi_p } = self.layers();
         let networks = [("chi", chi), ("chi_d", chi_d)];
         for (name, layers) in networks.into_iter().chain(chi_p.map(|layers| ("chi_p", layers))) {
-            for (index, Layer { weight, bias }) in layers.into_iter().enumerate() {
+            for (index, DenseLayer { weight, bias }) in layers.into_iter().enumerate() {
                 tensors.push((format!("{name}.{index}.weight"), weight));
                 tensors.push((format!("{name}.{index}.bias"), bias));
             }
@@ -201,7 +201,10 @@ fn scaling(card: &Card) -> [(&'static str, Tensor); 4] {
 }
 
 /// Layers 0, 1, ... of a network, up to the highest number in the file.
-fn take_layers(tensors: &mut BTreeMap<String, Tensor>, network: &str) -> Result<Vec<Layer>, Fault> {
+fn take_layers(
+    tensors: &mut BTreeMap<String, Tensor>,
+    network: &str,
+) -> Result<Vec<DenseLayer>, Fault> {
     let layer_of = |name: &String| -> Option<usize> {
         let (layer, _) = name.strip_prefix(network)?.strip_prefix('.')?.split_once('.')?;
         layer.parse().ok()
@@ -209,7 +212,7 @@ fn take_layers(tensors: &mut BTreeMap<String, Tensor>, network: &str) -> Result<
     let last = tensors.keys().filter_map(layer_of).max().unwrap_or(0);
     (0..=last)
         .map(|layer| {
-            Ok(Layer {
+            Ok(DenseLayer {
                 weight: take(tensors, &format!("{network}.{layer}.weight"))?,
                 bias: take(tensors, &format!("{network}.{layer}.bias"))?,
             })

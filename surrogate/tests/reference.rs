@@ -6,7 +6,7 @@ mod common;
 use common::{cases, design, tiny, with_peak};
 use hinge::{DesignGradient, HingeDeformation, HingeDesign, HingeGradient};
 use serde_json::Value;
-use surrogate::{HingeEnergy, Layer, Layers, Order, Surrogate, Tensor, feature_names};
+use surrogate::{DenseLayer, HingeEnergy, Layers, Order, Surrogate, Tensor, feature_names};
 
 /// The reference states, from an independent implementation.
 fn states() -> Vec<Value> {
@@ -118,7 +118,7 @@ fn with_holes() -> Surrogate {
     card.standardisation.mean.push(0.2);
     card.standardisation.std.push(0.1);
     let Layers { chi, chi_d, chi_p } = one_hole.layers();
-    let widened = |mut layers: Vec<Layer>| {
+    let widened = |mut layers: Vec<DenseLayer>| {
         let Tensor { shape, values } = &mut layers[0].weight;
         let rows = values.chunks(shape[1]).enumerate();
         let rows = rows.map(|(i, row)| [row, &[0.3 * (1.7 * i as f64).sin()]].concat());

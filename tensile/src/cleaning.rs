@@ -1,7 +1,7 @@
 //! Rows of a record that are not a monotone loading: unloading loops, rows after the break,
 //! repeated and shaking strains.
 
-use crate::record::{Cause, RecordRow};
+use crate::record::{Exclusion, RecordRow};
 use crate::regression::{mean, pools};
 use support::Point;
 use support::statistics::median;
@@ -41,7 +41,7 @@ pub(super) fn cleaned(rows: &mut [RecordRow]) -> Result<Cleaned, u64> {
     }
     let mut kept: Vec<&mut RecordRow> = rows.iter_mut().filter(|row| row.cause.is_none()).collect();
     let end = break_of(&kept.iter().map(|row| row.stress).collect::<Vec<_>>());
-    kept.drain(end..).for_each(|row| row.cause = Some(Cause::Broken));
+    kept.drain(end..).for_each(|row| row.cause = Some(Exclusion::Broken));
     let kept: Vec<Point> = kept.iter().map(|row| [row.strain, row.stress]).collect();
     let pools = pools(kept.iter().map(|row| row[0]), true).into_iter();
     let curve: Vec<Point> = pools.map(|pool| mean(&kept[pool])).collect();
@@ -56,7 +56,7 @@ fn mark_unloading(rows: &mut [RecordRow], fall: f64) {
         if rows[index].strain > rows[top].strain {
             top = index;
         } else if rows[index].strain < rows[top].strain - fall {
-            rows[top + 1..=index].iter_mut().for_each(|row| row.cause = Some(Cause::Unloading));
+            rows[top + 1..=index].iter_mut().for_each(|row| row.cause = Some(Exclusion::Unloading));
         } else {
             rows[index].cause = rows[index - 1].cause;
         }

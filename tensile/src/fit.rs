@@ -1,12 +1,12 @@
 //! The law of a material from its specimens: mean modulus, mean hardening curve, fracture strain,
 //! and the table of the finite elements.
 
-use crate::landmarks::{Draw, End};
+use crate::landmarks::{Draw, SpecimenEnd};
 use crate::local_curve::{ColdDrawing, beyond_maximum_force};
 use crate::record::{Record, RecordOptions};
 use crate::regression::{interpolated, thinned};
 use crate::specimen::SpecimenOptions;
-use crate::{Cause, ReadColumn, Specimen};
+use crate::{Exclusion, ReadColumn, Specimen};
 use hinge::SheetMaterial;
 use serde::Serialize;
 use std::path::PathBuf;
@@ -176,7 +176,7 @@ impl MaterialFit {
         let end = curve[curve.len() - 1];
         let (fracture_strain, fracture_scatter, fracture_source) =
             fracture(&specimens, options.fracture_strain, end.strain)?;
-        let necks = specimens.iter().all(|specimen| specimen.end == End::Neck);
+        let necks = specimens.iter().all(|specimen| specimen.end == SpecimenEnd::Neck);
         if necks && fracture_strain > end.strain {
             let stress =
                 beyond_maximum_force([end.stress, end.strain], fracture_strain, young.mean);
@@ -298,11 +298,11 @@ fn fracture(
         return Ok((strain, None, FractureSource::Given));
     }
     let any = |of| specimens.iter().any(|specimen| specimen.end == of);
-    let source = if any(End::Drawing) {
+    let source = if any(SpecimenEnd::Drawing) {
         FractureSource::DrawRatio
-    } else if any(End::Neck) {
+    } else if any(SpecimenEnd::Neck) {
         FractureSource::MaximumForce
-    } else if specimens.iter().all(|specimen| specimen.dropped_for(Cause::Broken) > 0) {
+    } else if specimens.iter().all(|specimen| specimen.dropped_for(Exclusion::Broken) > 0) {
         FractureSource::Break
     } else {
         FractureSource::RecordEnd
@@ -387,8 +387,8 @@ pub fn material_file(fit: &MaterialFit, material: &SheetMaterial, poisson_assume
 /// The file of a specimen, what was read from it and what was dropped.
 fn provenance(specimen: &Specimen) -> String {
     let name = specimen.path.file_name().unwrap_or_default().to_string_lossy();
-    let [toe, unloading, broken] =
-        [Cause::Toe, Cause::Unloading, Cause::Broken].map(|cause| specimen.dropped_for(cause));
+    let [toe, unloading, broken] = [Exclusion::Toe, Exclusion::Unloading, Exclusion::Broken]
+        .map(|cause| specimen.dropped_for(cause));
     let [from, to] = specimen.linear.strain.map(|strain| 100.0 * strain);
     format!(
         "# {} (blake3 {}): {}.\n#   {} rows, not used: {toe} in the toe, {unloading} of unloading, {broken} after the break.\n\

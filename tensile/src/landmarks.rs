@@ -38,7 +38,7 @@ pub struct Draw {
 /// How a specimen ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum End {
+pub enum SpecimenEnd {
     /// It broke, or the record ends, while its deformation was uniform.
     Uniform,
     /// It necked at the maximum force.
@@ -125,15 +125,15 @@ pub(super) fn draw(
 }
 
 /// The last row after `from` at which the strain is uniform, and how the specimen ends.
-pub(super) fn uniform_end(curve: &[Point], from: usize, noise: f64) -> (usize, End) {
+pub(super) fn uniform_end(curve: &[Point], from: usize, noise: f64) -> (usize, SpecimenEnd) {
     let last = curve.len() - 1;
     let top = highest(curve, from, curve.len());
     if from > last {
-        (last, End::Drawing)
+        (last, SpecimenEnd::Drawing)
     } else if curve[last][1] < curve[top][1] - change(curve[top][1], noise) {
-        (top, End::Neck)
+        (top, SpecimenEnd::Neck)
     } else {
-        (last, End::Uniform)
+        (last, SpecimenEnd::Uniform)
     }
 }
 

@@ -44,11 +44,11 @@ mod specimen;
 pub use fit::{
     FitOptions, FractureSource, HardeningRow, MaterialFit, Origin, Statistic, material_file,
 };
-pub use landmarks::{Draw, End};
+pub use landmarks::{Draw, SpecimenEnd};
 pub use linear_part::LinearPart;
 pub use number_table::StatedDimension;
 pub use quantity::Quantity;
-pub use record::{Cause, ReadColumn, RecordOptions, RecordRow};
+pub use record::{Exclusion, ReadColumn, RecordOptions, RecordRow};
 pub use specimen::{Softening, Specimen, SpecimenOptions};
 
 use std::path::Path;

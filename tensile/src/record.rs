@@ -31,7 +31,7 @@ pub struct RecordOptions {
 /// Why a row is not used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Cause {
+pub enum Exclusion {
     /// Unloading and reloading up to the strain before it.
     Unloading,
     /// After the break of the specimen.
@@ -50,7 +50,7 @@ pub struct RecordRow {
     /// Nominal stress (MPa).
     pub stress: f64,
     /// Why the row is not used, if it is not.
-    pub cause: Option<Cause>,
+    pub cause: Option<Exclusion>,
 }
 
 /// The curve of one specimen in the units of the project.

@@ -11,12 +11,12 @@
 
 use crate::cleaning::{Cleaned, cleaned};
 use crate::in_file;
-use crate::landmarks::{self, Draw, End, offset_yield, uniform_end};
+use crate::landmarks::{self, Draw, SpecimenEnd, offset_yield, uniform_end};
 use crate::linear_part::LinearPart;
 use crate::local_curve::{first_part, second_part, true_row};
 use crate::number_table::StatedDimension;
 use crate::quantity::Quantity::Extension;
-use crate::record::{Cause, ReadColumn, Record, RecordRow, within};
+use crate::record::{Exclusion, ReadColumn, Record, RecordRow, within};
 use crate::regression::Regression;
 use serde::Serialize;
 use std::path::PathBuf;
@@ -77,7 +77,7 @@ pub struct Specimen {
     /// The draw, if the specimen drew.
     pub draw: Option<Draw>,
     /// How the specimen ended.
-    pub end: End,
+    pub end: SpecimenEnd,
     /// Nominal curve [strain, stress] without the dropped rows.
     #[serde(skip)]
     pub nominal: Vec<Point>,
@@ -134,7 +134,7 @@ impl Specimen {
             [["", "1"], ["", "%"]],
         )
         .map_err(file)?;
-        let (mut draw, mut last, mut ended) = (None, end, End::Uniform);
+        let (mut draw, mut last, mut ended) = (None, end, SpecimenEnd::Uniform);
         if !record.is_local() {
             draw = landmarks::draw(smooth, *elastic, noise[1], options.draw_ratio).map_err(file)?;
             let drawn = |draw: &Draw| smooth.partition_point(|row| 1.0 + row[0] < draw.draw_ratio);
@@ -156,7 +156,7 @@ impl Specimen {
         let rows = record.rows.len();
         let unmarked = record.rows.iter_mut().filter(|row| row.cause.is_none());
         let toe = unmarked.take_while(|row| curve.is_toe(row.strain));
-        toe.for_each(|row| row.cause = Some(Cause::Toe));
+        toe.for_each(|row| row.cause = Some(Exclusion::Toe));
         let mut dropped = record.rows;
         dropped.retain(|row| row.cause.is_some());
         dropped.iter_mut().for_each(|row| row.strain = curve.corrected(row.strain, row.stress));
@@ -166,7 +166,7 @@ impl Specimen {
             stated: record.stated,
             unused: record.unused,
             hash: record.hash,
-            softening: (ended == End::Neck)
+            softening: (ended == SpecimenEnd::Neck)
                 .then(|| Softening { rows: end - last, ends: [last, end].map(|row| smooth[row]) }),
             after: draw.map_or(Vec::new(), |draw| second_part(&smooth[..=last], &draw, young)),
             strength: nominal.iter().map(|row| row[1]).fold(0.0, f64::max),
@@ -187,7 +187,7 @@ impl Specimen {
     }
 
     /// Number of rows dropped for a cause.
-    pub fn dropped_for(&self, cause: Cause) -> usize {
+    pub fn dropped_for(&self, cause: Exclusion) -> usize {
         self.dropped.iter().filter(|row| row.cause == Some(cause)).count()
     }
 }

@@ -5,7 +5,7 @@
 //! ```
 
 use crate::common::Workplace;
-use dataset::{Database, Part, Row, SplitPlan};
+use dataset::{Database, Row, SplitPlan, Subset};
 use hinge::{HingeConstants, HingeSample};
 use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;
@@ -206,7 +206,7 @@ fn a_database_is_corrected_by_some_rays_of_a_finer_mesh() {
     assert_eq!(card["tier"], "default corrected to reference");
     let database = Database::read(&work.path(SHIPPED)).unwrap();
     assert_eq!(card["dataset_hash"], database.manifest().hash);
-    let training = database.manifest().split.jobs(Part::Training);
+    let training = database.manifest().split.jobs(Subset::Training);
     assert_eq!(card["training_rays"], training.len());
 }
 

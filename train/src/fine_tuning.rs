@@ -21,7 +21,7 @@ use burn::tensor::DType;
 use dataset::{Manifest, Row};
 use hinge::HingeConstants;
 use support::{Fault, fault, refuse};
-use surrogate::{Card, Layer, Layers, Standardisation, Surrogate, feature_names};
+use surrogate::{Card, DenseLayer, Layers, Standardisation, Surrogate, feature_names};
 
 /// The initial networks and their scales.
 pub(crate) struct Initial {
@@ -132,7 +132,7 @@ fn factor(points: impl Iterator<Item = [f64; 2]>) -> f64 {
 /// Changes a first layer such that its outputs for inputs standardised by `to` are those for inputs
 /// standardised by `from` before. They do not depend on a feature that only `to` has, the radius
 /// of the hole.
-fn restandardise(first: &mut Layer, from: &Standardisation, to: &Standardisation) {
+fn restandardise(first: &mut DenseLayer, from: &Standardisation, to: &Standardisation) {
     let [known, features] = [from, to].map(|features| features.mean.len());
     let mut weights = Vec::with_capacity(first.bias.values.len() * features);
     let rows = first.weight.values.chunks_exact(known);
@@ -147,7 +147,7 @@ fn restandardise(first: &mut Layer, from: &Standardisation, to: &Standardisation
     first.weight.values = weights;
 }
 
-fn multiply(layer: &mut Layer, factor: f64) {
+fn multiply(layer: &mut DenseLayer, factor: f64) {
     for values in [&mut layer.weight.values, &mut layer.bias.values] {
         values.iter_mut().for_each(|value| *value *= factor);
     }

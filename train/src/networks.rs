@@ -7,7 +7,7 @@ use burn::tensor::{DType, Device, Tensor, TensorCreationOptions, TensorData, Ten
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use support::{Fault, fault};
-use surrogate::{Layer, Layers};
+use surrogate::{DenseLayer, Layers};
 
 /// The networks have no common layers: D_peak, which has more scatter, would otherwise cause the
 /// network of D to overfit.
@@ -73,7 +73,7 @@ impl Networks {
 
     /// The networks of a weight file.
     pub(crate) fn from_layers(layers: &Layers, options: &TensorCreationOptions) -> Self {
-        let network = |layers: &[Layer], folds: Vec<Fold>| {
+        let network = |layers: &[DenseLayer], folds: Vec<Fold>| {
             let layers = layers.iter().zip(folds);
             Mlp {
                 layers: layers
@@ -81,7 +81,7 @@ impl Networks {
                     .collect(),
             }
         };
-        let head = |layers: &[Layer]| network(layers, head_folds(layers.len()));
+        let head = |layers: &[DenseLayer]| network(layers, head_folds(layers.len()));
         let Layers { chi, chi_d, chi_p } = layers;
         Self {
             chi: network(chi, folds(chi.len())),
@@ -148,7 +148,7 @@ impl Dense {
     }
 
     /// The trained part of a layer of a weight file, whose weight is (outputs, inputs).
-    fn from_layer(layer: &Layer, fold: Fold, options: &TensorCreationOptions) -> Self {
+    fn from_layer(layer: &DenseLayer, fold: Fold, options: &TensorCreationOptions) -> Self {
         let tensor = |tensor: &surrogate::Tensor| {
             TensorData::new(tensor.values.clone(), tensor.shape.clone())
         };
@@ -186,10 +186,10 @@ pub(crate) fn unread(error: TensorReadError) -> Fault {
     fault!("a tensor cannot be read from the backend: {error}")
 }
 
-fn layer(affine: Affine) -> Result<Layer, Fault> {
+fn layer(affine: Affine) -> Result<DenseLayer, Fault> {
     let weight = affine.weight.inner().transpose();
     let bias = affine.bias.inner();
-    Ok(Layer {
+    Ok(DenseLayer {
         weight: surrogate::Tensor {
             shape: weight.dims().to_vec(),
             values: weight.try_into_vec_as().map_err(unread)?,

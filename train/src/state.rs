@@ -22,21 +22,21 @@ const FORMAT_VERSION: u32 = 3;
 /// The part of a state that is not tensors.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct Progress {
+pub(crate) struct TrainingProgress {
     format_version: u32,
     pub card: Card,
     pub history: Vec<Epoch>,
 }
 
-impl Progress {
+impl TrainingProgress {
     pub(crate) fn new(card: &Card, history: &[Epoch]) -> Self {
         Self { format_version: FORMAT_VERSION, card: card.clone(), history: history.to_vec() }
     }
 }
 
 /// A state read from disk.
-pub(crate) struct State {
-    pub progress: Progress,
+pub(crate) struct TrainingState {
+    pub progress: TrainingProgress,
     path: PathBuf,
     records: [Vec<u8>; 3],
 }
@@ -61,7 +61,7 @@ fn malformed(path: &Path) -> impl Fn(&dyn Display) -> Fault {
 /// Writes a state atomically.
 pub(crate) fn write(
     path: &Path,
-    progress: &Progress,
+    progress: &TrainingProgress,
     networks: &Networks,
     best: &Networks,
     optimiser: &ModuleOptimizer,
@@ -87,7 +87,7 @@ pub(crate) fn write(
     support::whole_file::write(path, &bytes).map_err(unwritten(path))
 }
 
-impl State {
+impl TrainingState {
     pub(crate) fn read(path: &Path) -> Result<Self, Fault> {
         let malformed = malformed(path);
         let bytes = support::regular_file::read(path).map_err(unread(path))?;
@@ -101,7 +101,7 @@ impl State {
         let (_, metadata) = SafeTensors::read_metadata(body).map_err(|error| malformed(&error))?;
         let progress = metadata.metadata().as_ref().and_then(|map| map.get("progress"));
         let progress = progress.ok_or_else(|| malformed(&"it contains no progress"))?;
-        let progress: Progress =
+        let progress: TrainingProgress =
             serde_json::from_str(progress).map_err(|error| malformed(&error))?;
         if progress.format_version != FORMAT_VERSION {
             return Err(malformed(&format!(

@@ -7,13 +7,13 @@ use crate::fine_tuning::{Initial, check_pretrained, inherit};
 use crate::loss::loss;
 use crate::networks::{Networks, layers, options, unread};
 use crate::samples::{Batch, Sample, Scales};
-use crate::state::{self, Epoch, Progress, State};
+use crate::state::{self, Epoch, TrainingProgress, TrainingState};
 use crate::validation::Parity;
 use burn::grad_clipping::GradientClippingConfig;
 use burn::module::ParamGroup;
 use burn::optim::{AdamConfig, GradientsParams, ModuleOptimizer, MuonConfig};
 use burn::tensor::{DType, TensorCreationOptions};
-use dataset::{Database, Manifest, Part, Row, with_mirrored};
+use dataset::{Database, Manifest, Row, Subset, with_mirrored};
 use hinge::TrainingDomain;
 use rand::SeedableRng;
 use rand::seq::SliceRandom;
@@ -124,7 +124,7 @@ impl Training {
                 initial.scales
             }
             Start::State { state, .. } => {
-                let state = saved.insert(State::read(state)?);
+                let state = saved.insert(TrainingState::read(state)?);
                 Scales::from_card(&state.progress.card, &rows)?
             }
         };
@@ -248,14 +248,14 @@ impl Training {
 
     /// Atomically writes the state from which a [`Start::State`] continues.
     pub fn save(&self, path: &Path) -> Result<(), Fault> {
-        let progress = Progress::new(&self.card, &self.history);
+        let progress = TrainingProgress::new(&self.card, &self.history);
         state::write(path, &progress, &self.networks, &self.best, &self.optimiser)?;
         Ok(())
     }
 
-    fn resume(&mut self, state: State) -> Result<(), Fault> {
+    fn resume(&mut self, state: TrainingState) -> Result<(), Fault> {
         state.check(&self.card)?;
-        let Progress { card, history, .. } = state.progress.clone();
+        let TrainingProgress { card, history, .. } = state.progress.clone();
         self.elapsed_s = history.last().map_or(0.0, |epoch| epoch.elapsed_s);
         (self.card, self.history) = (card, history);
         let optimiser = self.optimiser.clone();
@@ -304,9 +304,9 @@ impl Parts {
             rows => Ok(rows),
         };
         Ok(Self {
-            training: part(Part::Training, "training")?,
-            validation: part(Part::Validation, "validation")?,
-            test: part(Part::Test, "test")?,
+            training: part(Subset::Training, "training")?,
+            validation: part(Subset::Validation, "validation")?,
+            test: part(Subset::Test, "test")?,
         })
     }
 }

@@ -14,12 +14,12 @@ const ROUNDING: f64 = 1e-3;
 
 /// The finished edges of a panel, counter-clockwise.
 pub(crate) struct FinishedPanel {
-    edges: Vec<Edge>,
+    edges: Vec<FinishedEdge>,
     slit: f64,
 }
 
 #[derive(Clone, Copy)]
-struct Edge {
+struct FinishedEdge {
     /// Where it begins before the cut (mm).
     begin: Point,
     /// A point of the finished edge (mm), and its direction.
@@ -35,19 +35,22 @@ impl FinishedPanel {
         let cell = sheet.panels[panel].corners;
         let sides = edges(&cell).enumerate().map(|(side, ends)| {
             let inside = if is_cut(sheet, panel, side) { 0.5 * slit } else { 0.0 };
-            (Edge { side: Some(side), ..Edge::new(ends, inside) }, 2.0 * AT_CUT * inside + ROUNDING)
+            (
+                FinishedEdge { side: Some(side), ..FinishedEdge::new(ends, inside) },
+                2.0 * AT_CUT * inside + ROUNDING,
+            )
         });
-        let sides: Vec<(Edge, f64)> = sides.collect();
-        let mut finished: Vec<Edge> = Vec::new();
+        let sides: Vec<(FinishedEdge, f64)> = sides.collect();
+        let mut finished: Vec<FinishedEdge> = Vec::new();
         for ends in edges(&sheet.panels[panel].boundary) {
-            let edge = Edge::new(ends, 0.0);
-            let on_side = |(side, reach): &&(Edge, f64)| {
+            let edge = FinishedEdge::new(ends, 0.0);
+            let on_side = |(side, reach): &&(FinishedEdge, f64)| {
                 let [along, _] = side.local(edge.direction, [0.0; 2]);
                 let off = |point: Point| side.local(point, side.begin)[1].abs();
                 along > 0.0 && off(ends.0) < *reach && off(ends.1) < *reach
             };
             let side = sides.iter().find(on_side);
-            let edge = side.map_or(edge, |(side, _)| Edge { begin: edge.begin, ..*side });
+            let edge = side.map_or(edge, |(side, _)| FinishedEdge { begin: edge.begin, ..*side });
             if !finished.last().is_some_and(|last| last.continues_in(&edge)) {
                 finished.push(edge);
             }
@@ -69,7 +72,7 @@ impl FinishedPanel {
     }
 
     /// Each edge with the one before it.
-    fn pairs(&self) -> impl Iterator<Item = (&Edge, &Edge)> {
+    fn pairs(&self) -> impl Iterator<Item = (&FinishedEdge, &FinishedEdge)> {
         std::iter::zip(self.edges.iter().cycle().skip(self.edges.len() - 1), &self.edges)
     }
 
@@ -89,7 +92,7 @@ impl FinishedPanel {
     pub(crate) fn nearest(&self, point: Point) -> Point {
         let corners = self.corners();
         edges(&corners).fold(point, |at, ends| {
-            let edge = Edge::new(ends, 0.0);
+            let edge = FinishedEdge::new(ends, 0.0);
             let [along, depth] = edge.local(at, edge.begin);
             let along_it = (-self.slit..distance(ends.0, ends.1) + self.slit).contains(&along);
             if along_it && depth.abs() <= self.slit { edge.inwards(at, -depth) } else { at }
@@ -97,7 +100,7 @@ impl FinishedPanel {
     }
 }
 
-impl Edge {
+impl FinishedEdge {
     /// The edge between two points, moved inwards.
     fn new((from, to): (Point, Point), inside: f64) -> Self {
         let length = distance(from, to);

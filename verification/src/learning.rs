@@ -7,7 +7,7 @@
 use crate::rows::collected;
 use crate::verification_error::{VerificationError, every_ray_failed};
 use dataset::{Database, Row};
-use fe_driver::{Campaign, Progress, RunOptions, Shard, Solver, run, status};
+use fe_driver::{Campaign, CampaignProgress, RunOptions, Shard, Solver, run, status};
 use std::collections::VecDeque;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -116,7 +116,7 @@ impl<'a> Learning<'a> {
     /// with the number of their rays, or why there is no further round.
     pub fn solve(
         &mut self,
-        progress: &mut dyn FnMut(&Progress),
+        progress: &mut dyn FnMut(&CampaignProgress),
     ) -> Result<Result<(usize, Database), LearningEnd>, VerificationError> {
         if let Some(end) = self.end {
             return Ok(Err(end));

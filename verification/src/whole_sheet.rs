@@ -3,12 +3,13 @@
 use crate::finished_panel::FinishedPanel;
 use crate::verification_error::VerificationError;
 use design::sheet::cut_sheet::{AttachmentPoint, PanelPoint, Sheet};
-use design::sheet::hinge_window::Window;
+use design::sheet::hinge_window::HingeWindow;
 use design::sheet::topology::PanelCorner;
-use fe_driver::{Held, OutOfPlaneRestraint, Place, Pulled, SheetProblem};
+use fe_driver::{HeldPanel, OutOfPlaneRestraint, Place, Pulled, SheetProblem};
 use hinge::{HingeDesign, Regime};
 use mesher::{
-    Frame, Imperfection, PanelShape, Panels, PlacedWindow, PlaneRecipe, SheetMesh, SheetShape, Tier,
+    Frame, Imperfection, PanelPolygon, Panels, PlacedWindow, PlaneRecipe, SheetMesh, SheetShape,
+    Tier,
 };
 use scene::{Posture, PostureConfig, Scene, SupportKind};
 use std::iter::zip;
@@ -138,7 +139,7 @@ fn pulled(scene: &Scene, sheet: &Sheet) -> Result<Vec<Pulled>, VerificationError
 }
 
 /// The supports of the scene.
-fn held(scene: &Scene, sheet: &Sheet) -> Result<Vec<Held>, VerificationError> {
+fn held(scene: &Scene, sheet: &Sheet) -> Result<Vec<HeldPanel>, VerificationError> {
     let attachments = scene.actuation().attachments;
     let supports = zip(&scene.config.supports, &attachments);
     let held = supports.map(|(support, attachment)| {
@@ -149,7 +150,7 @@ fn held(scene: &Scene, sheet: &Sheet) -> Result<Vec<Held>, VerificationError> {
             );
         }
         let holds = support.kind.holds();
-        Ok(Held {
+        Ok(HeldPanel {
             panel: attachment.panel,
             place: place(sheet, attachment, support.kind),
             motion: [0, 1].map(|axis| holds[axis].then_some(support.displacement[axis])),
@@ -188,8 +189,8 @@ pub(crate) fn meshed_radii(sheet: &Sheet) -> Result<Vec<f64>, VerificationError>
     let mut ratio = r_win / widths().fold(f64::INFINITY, f64::min);
     loop {
         let radii: Vec<f64> = widths().map(|w_lig| r_win.min(ratio * w_lig)).collect();
-        let windows: Vec<Window> = zip(Window::of_sheet(sheet), &radii)
-            .map(|(window, radius)| Window { radius: APART * radius, ..window })
+        let windows: Vec<HingeWindow> = zip(HingeWindow::of_sheet(sheet), &radii)
+            .map(|(window, radius)| HingeWindow { radius: APART * radius, ..window })
             .collect();
         let apart = (windows.iter().enumerate())
             .all(|(h, one)| windows[..h].iter().all(|other| !one.overlaps(other)));
@@ -226,7 +227,7 @@ fn sheet_shape(
     };
     let radii = meshed_radii(sheet)?;
     let smallest = radii.iter().copied().fold(f64::INFINITY, f64::min);
-    let windows = zip(Window::of_sheet(sheet), &radii);
+    let windows = zip(HingeWindow::of_sheet(sheet), &radii);
     let finished: Vec<_> =
         (0..sheet.panels.len()).map(|panel| FinishedPanel::new(sheet, panel)).collect();
     let placed = (sheet.hinges.iter().zip(sheet.designs())).zip(windows).map(
@@ -258,7 +259,7 @@ fn sheet_shape(
         model,
         windows: placed.collect::<Result<_, VerificationError>>()?,
         panels: (finished.into_iter())
-            .map(|panel| PanelShape { corners: panel.corners(), marks: Vec::new() })
+            .map(|panel| PanelPolygon { corners: panel.corners(), marks: Vec::new() })
             .collect(),
         plane,
         layers: LAYERS,

@@ -16,10 +16,10 @@ use faer::c64;
 use std::collections::BTreeSet;
 
 /// Column and row of a square; or of its lower left corner.
-pub(super) type Cell = [i32; 2];
+pub(super) type GridIndex = [i32; 2];
 
 /// Two squares that hang together; the second is to the right of or above the first.
-pub(super) type Pair = [Cell; 2];
+pub(super) type HingedSquares = [GridIndex; 2];
 
 /// How far the pattern is open.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -43,20 +43,20 @@ impl Opening {
     }
 
     /// The motion of a square when the pattern opens.
-    pub(super) fn motion(self, cell: Cell) -> Similarity {
+    pub(super) fn motion(self, cell: GridIndex) -> Similarity {
         let half = if is_even(cell) { -0.5 * self.angle } else { 0.5 * self.angle };
         let (turn, centre) = (c64::cis(half), complex(centre(cell)));
         Similarity { turn, shift: self.pitch() * centre - turn * centre }
     }
 
     /// The motion of one square as another sees it.
-    pub(super) fn relative_motion(self, of: Cell, seen_by: Cell) -> Similarity {
+    pub(super) fn relative_motion(self, of: GridIndex, seen_by: GridIndex) -> Similarity {
         let (one, other) = (self.motion(of), self.motion(seen_by));
         Similarity { turn: one.turn / other.turn, shift: (one.shift - other.shift) / other.turn }
     }
 }
 
-fn is_even([i, j]: Cell) -> bool {
+fn is_even([i, j]: GridIndex) -> bool {
     (i + j).rem_euclid(2) == 0
 }
 
@@ -66,7 +66,7 @@ pub(super) fn moved(motion: Similarity, at: [f64; 2]) -> [f64; 2] {
 }
 
 /// The corner at which two squares hang together.
-pub(super) fn hinge([first, second]: Pair) -> Cell {
+pub(super) fn hinge([first, second]: HingedSquares) -> GridIndex {
     let [i, j] = first;
     match (second[0] > i, is_even(first)) {
         (true, true) => [i + 1, j + 1],
@@ -77,7 +77,7 @@ pub(super) fn hinge([first, second]: Pair) -> Cell {
 }
 
 /// The four hinged pairs of the loop whose lower left square has these numbers.
-pub(super) fn pairs([i, j]: Cell) -> [Pair; 4] {
+pub(super) fn pairs([i, j]: GridIndex) -> [HingedSquares; 4] {
     [
         [[i, j], [i + 1, j]],
         [[i, j + 1], [i + 1, j + 1]],
@@ -87,24 +87,24 @@ pub(super) fn pairs([i, j]: Cell) -> [Pair; 4] {
 }
 
 /// The squares next to one.
-pub(super) fn neighbours([i, j]: Cell) -> [Cell; 4] {
+pub(super) fn neighbours([i, j]: GridIndex) -> [GridIndex; 4] {
     [[i + 1, j], [i - 1, j], [i, j + 1], [i, j - 1]]
 }
 
 /// The squares of loops.
-pub(super) fn squares(loops: &BTreeSet<Cell>) -> BTreeSet<Cell> {
-    let of_loop = |&[i, j]: &Cell| [[i, j], [i + 1, j], [i, j + 1], [i + 1, j + 1]];
+pub(super) fn squares(loops: &BTreeSet<GridIndex>) -> BTreeSet<GridIndex> {
+    let of_loop = |&[i, j]: &GridIndex| [[i, j], [i + 1, j], [i, j + 1], [i + 1, j + 1]];
     loops.iter().flat_map(of_loop).collect()
 }
 
 /// The corners of a square, counter-clockwise from the lower left.
-pub(super) fn corners(cell: Cell) -> Vec<[f64; 2]> {
+pub(super) fn corners(cell: GridIndex) -> Vec<[f64; 2]> {
     let [x, y] = cell.map(f64::from);
     vec![[x, y], [x + 1.0, y], [x + 1.0, y + 1.0], [x, y + 1.0]]
 }
 
 /// The centre of a square.
-pub(super) fn centre(cell: Cell) -> [f64; 2] {
+pub(super) fn centre(cell: GridIndex) -> [f64; 2] {
     cell.map(|i| f64::from(i) + 0.5)
 }
 

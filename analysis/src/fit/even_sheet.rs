@@ -1,12 +1,12 @@
 //! The sheet of a drawing from an even pattern: where the drawing lies on the opened pattern, and
 //! the panels there.
 
-use super::even_pattern::{Cell, centre, moved, neighbours, squares};
+use super::even_pattern::{GridIndex, centre, moved, neighbours, squares};
 use super::raster::Raster;
 use super::trimmed::{Limits, ON_EDGE, RINGS, largest_joined, loops, opened, panels};
 use design::geometry::plane::{complex, point};
 use design::geometry::polygon::{bounds, distance_to_outline, distance_to_segment, size};
-use design::geometry::region::{Contour, Region, seen};
+use design::geometry::region::{Region, Ring, seen};
 use design::geometry::similarity::Similarity;
 use design::pattern::grid::Grid;
 use design::sheet::topology::Topology;
@@ -63,8 +63,8 @@ pub struct EvenSheet {
     pub place: Similarity,
     /// The drawing there.
     pub(super) drawing: Region,
-    loops: BTreeSet<Cell>,
-    panels: BTreeMap<Cell, Region>,
+    loops: BTreeSet<GridIndex>,
+    panels: BTreeMap<GridIndex, Region>,
     /// Intersection over union of what one sees of the opened panels and the drawing.
     pub seen: f64,
 }
@@ -120,7 +120,7 @@ impl EvenSheet {
         drawing: &Region,
         place: Similarity,
         limits: Limits,
-        mut loops: BTreeSet<Cell>,
+        mut loops: BTreeSet<GridIndex>,
         at: [f64; 2],
     ) -> Result<Self, Fault> {
         let drawing =
@@ -131,13 +131,13 @@ impl EvenSheet {
         if before.contains(&[i, j]) {
             loops.retain(|it| !around.contains(it));
         } else {
-            let more = |it: &Cell| squares(&BTreeSet::from([*it])).difference(&before).count();
+            let more = |it: &GridIndex| squares(&BTreeSet::from([*it])).difference(&before).count();
             let fewest = around.iter().map(more).min();
             let needed = around.into_iter().filter(|it| Some(more(it)) == fewest);
             loops.extend(needed.take(if fewest == Some(1) { 4 } else { 1 }));
         }
         let in_drawing =
-            |cell: &Cell| drawing.contains(moved(limits.opening.motion(*cell), centre(*cell)));
+            |cell: &GridIndex| drawing.contains(moved(limits.opening.motion(*cell), centre(*cell)));
         ensure!(
             squares(&loops).difference(&before).all(in_drawing),
             "a panel there, or the one that it needs next to it, is outside of the target"
@@ -153,7 +153,7 @@ impl EvenSheet {
     /// How many points of the drawing are so near to the squares that panels may have them; `None`
     /// if the flat sheet does not fit into the stock with them.
     fn in_reach(&self, points: &[[f64; 2]]) -> Option<usize> {
-        let mut owners: BTreeMap<Cell, Cell> =
+        let mut owners: BTreeMap<GridIndex, GridIndex> =
             squares(&self.loops).into_iter().map(|it| (it, it)).collect();
         for _ in 0..RINGS {
             for (cell, owner) in owners.clone() {
@@ -168,7 +168,7 @@ impl EvenSheet {
             let owner = owners.get(&there.map(|x| (x / opening.pitch()).floor() as i32))?;
             Some(point(opening.motion(*owner).back(complex(there))))
         });
-        let flat: Contour = flat.collect();
+        let flat: Ring = flat.collect();
         self.fits(&flat).then_some(flat.len())
     }
 
@@ -206,13 +206,13 @@ impl EvenSheet {
     }
 
     /// The contours of the panels at a part of the opening.
-    pub fn opened(&self, part: f64) -> Vec<Contour> {
+    pub fn opened(&self, part: f64) -> Vec<Ring> {
         opened(&self.panels, self.limits.opening.part(part))
     }
 
     /// Columns and rows of the pattern, and the first cell of it: the kept squares and what is
     /// between them.
-    pub(super) fn cells(&self) -> (Grid, Cell) {
+    pub(super) fn cells(&self) -> (Grid, GridIndex) {
         let squares = squares(&self.loops);
         let least = |c: usize| squares.iter().map(|cell| cell[c]).min().unwrap_or_default();
         let most = |c: usize| squares.iter().map(|cell| cell[c]).max().unwrap_or_default();
@@ -256,8 +256,8 @@ impl EvenSheet {
 
 /// Without corners next to each other, on a straight edge or at the tip of a line without width, but
 /// with all of the cell.
-fn distinct(mut boundary: Contour) -> Contour {
-    let is_idle = |boundary: &Contour, i: usize| {
+fn distinct(mut boundary: Ring) -> Ring {
+    let is_idle = |boundary: &Ring, i: usize| {
         let n = boundary.len();
         let [before, at, after] = [i + n - 1, i, i + 1].map(|k| boundary[k % n]);
         let is_of_cell = at.iter().all(|x| *x == 0.0 || *x == 1.0);
@@ -380,7 +380,7 @@ mod tests {
     };
 
     /// A closed curve about the origin with a radius that varies in waves.
-    fn blob(random: &mut ChaCha8Rng, radius: f64) -> Contour {
+    fn blob(random: &mut ChaCha8Rng, radius: f64) -> Ring {
         let waves: Vec<[f64; 2]> = (1..6)
             .map(|k| [random.random_range(0.0..0.35) / f64::from(k), random.random_range(0.0..TAU)])
             .collect();
@@ -412,7 +412,7 @@ mod tests {
     }
 
     /// What one sees of panels, by points of a raster instead of polygons.
-    fn seen_in_points(panels: Vec<Contour>, drawing: &Region) -> f64 {
+    fn seen_in_points(panels: Vec<Ring>, drawing: &Region) -> f64 {
         const REACH: i32 = 10;
         let mean = panels.iter().map(|panel| area(panel)).sum::<f64>() / panels.len() as f64;
         let gap = f64::max(0.04 * drawing.longer_side(), 0.6 * mean.sqrt());
@@ -441,7 +441,7 @@ mod tests {
     /// with one outside, the sheet is refused.
     fn assert_toggled(sheet: &EvenSheet) {
         let still = Similarity { turn: c64::ONE, shift: c64::ZERO };
-        let toggle = |loops: &BTreeSet<Cell>, cell| {
+        let toggle = |loops: &BTreeSet<GridIndex>, cell| {
             let at = moved(LIMITS.opening.motion(cell), centre(cell));
             EvenSheet::toggled(&sheet.drawing, still, LIMITS, loops.clone(), at)
         };

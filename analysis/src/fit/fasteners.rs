@@ -31,7 +31,7 @@ pub(super) const HOLES: [f64; 3] = [4.2, 3.2, 2.2];
 
 /// How fasteners hold a sheet.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Held {
+pub struct Fastening {
     /// Number of fasteners.
     pub count: usize,
     /// Distances of the middles of the panels from the even opening, over the longer side of the
@@ -50,7 +50,7 @@ pub struct Held {
     pub leaves_domain: bool,
 }
 
-impl Held {
+impl Fastening {
     /// How the fasteners of a scene hold its sheet, whose panels have their middles at `flat` and,
     /// opened evenly, at `even` (mm); `None` without an equilibrium next to a `known` one.
     pub(super) fn of(

@@ -3,13 +3,13 @@
 
 use crate::fit::even_pattern::Opening;
 use crate::fit::even_sheet::{EvenSheet, QUICK, Search, THOROUGH, growth};
-use crate::fit::fasteners::{AT_MOST, Candidates, FIRST, HOLES, Held};
+use crate::fit::fasteners::{AT_MOST, Candidates, FIRST, Fastening, HOLES};
 use crate::fit::lost::{Lost, kept_by, lost};
 use crate::fit::opening::{free_axial_opening, safe_opening};
 use crate::fit::trimmed::{Limits, TOLERANCE};
 use design::geometry::plane::{complex, point};
 use design::geometry::polygon::bounds;
-use design::geometry::region::{Contour, Region};
+use design::geometry::region::{Region, Ring};
 use design::geometry::similarity::Similarity;
 use design::pattern::grid::Grid;
 use design::sheet::topology::Topology;
@@ -55,7 +55,7 @@ pub struct FittedScene {
     /// Intersection over union of what one sees of the opened panels and the target.
     pub seen: f64,
     /// How its fasteners hold it; `None` if no equilibrium is found.
-    pub held: Option<Held>,
+    pub held: Option<Fastening>,
     /// The parts of the target that are not seen.
     pub lost: Vec<Lost>,
     /// The factor by which the stock has to be longer and wider, or the sheet thinner, to show them;
@@ -122,7 +122,7 @@ fn fastened(scene: &Scene, sheet: &EvenSheet, side: f64) -> Result<FittedScene, 
 
 /// The outlines of the opened panels over the target (mm) that a short search finds, and how much of
 /// the target one sees.
-pub fn cropped(scene: &Scene, side: f64) -> Result<(Vec<Contour>, f64), Fault> {
+pub fn cropped(scene: &Scene, side: f64) -> Result<(Vec<Ring>, f64), Fault> {
     let sheet = even_sheet(scene, side, QUICK)?;
     let back = |at: &[f64; 2]| point(sheet.place.back(complex(*at)));
     let panels = sheet.opened(1.0);
@@ -228,7 +228,7 @@ fn fasten(
     sheet: &EvenSheet,
     topology: &Topology,
     side: f64,
-) -> (SceneConfig, Option<Held>) {
+) -> (SceneConfig, Option<Fastening>) {
     let laid = LaidSheet::new(sheet, topology, side);
     let [flat, even] = [0.0, laid.opened].map(|opened| laid.middles(opened));
     let candidates = Candidates::new(topology);
@@ -242,17 +242,17 @@ fn fasten(
     };
     let Some(known) = known() else { return (most, None) };
     fastened.truncate(FIRST);
-    let mut best: Option<(SceneConfig, Held)> = None;
+    let mut best: Option<(SceneConfig, Fastening)> = None;
     loop {
         let config = laid.keys(scene, sheet, &fastened);
         // A sheet that is refused is not balanced: what is seen of its target says more.
         let changed = scene.changed(config.clone()).ok();
-        let held = changed.and_then(|scene| Held::of(&scene, &flat, &even, &known));
+        let held = changed.and_then(|scene| Fastening::of(&scene, &flat, &even, &known));
         let (next, suffices) = match &held {
             Some(held) => (candidates.most_off(&held.off), held.suffices()),
             None => (candidates.farthest(&fastened), false),
         };
-        let better = |best: &Held, held: &Held| held.unevenness() < best.unevenness();
+        let better = |best: &Fastening, held: &Fastening| held.unevenness() < best.unevenness();
         if let Some(held) = held
             && (suffices || best.as_ref().is_none_or(|(_, best)| better(best, &held)))
         {

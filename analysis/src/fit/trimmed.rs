@@ -6,11 +6,11 @@
 //! Lengths are in sides of a square.
 
 use super::even_pattern::{
-    Cell, Opening, Pair, centre, corners, hinge, moved, neighbours, pairs, squares,
+    GridIndex, HingedSquares, Opening, centre, corners, hinge, moved, neighbours, pairs, squares,
 };
 use design::geometry::plane::{complex, point};
 use design::geometry::polygon::{distance, distance_to_outline, distance_to_polygon};
-use design::geometry::region::{Contour, Corners, Region};
+use design::geometry::region::{Ring, Corners, Region};
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_2};
 
@@ -57,11 +57,11 @@ pub(super) fn loops(
     bounds: [[f64; 2]; 2],
     limits: &Limits,
     inside: &impl Fn([f64; 2]) -> bool,
-) -> BTreeSet<Cell> {
+) -> BTreeSet<GridIndex> {
     let cells = |x: f64| (x / limits.opening.pitch()).floor() as i32;
     let [from, to] = bounds.map(|corner| corner.map(cells));
     let all = (from[1] - 1..=to[1]).flat_map(|j| (from[0] - 1..=to[0]).map(move |i| [i, j]));
-    let counts = |pair: &Pair| {
+    let counts = |pair: &HingedSquares| {
         let corner = hinge(*pair);
         pair.iter().all(|cell| window(*cell, corner, limits).into_iter().all(inside))
     };
@@ -69,12 +69,13 @@ pub(super) fn loops(
 }
 
 /// The largest set of some loops that is joined by pairs of squares.
-pub(super) fn largest_joined(mut left: BTreeSet<Cell>) -> BTreeSet<Cell> {
+pub(super) fn largest_joined(mut left: BTreeSet<GridIndex>) -> BTreeSet<GridIndex> {
     let mut largest = BTreeSet::new();
     while let Some(first) = left.pop_first() {
         let (mut joined, mut next) = (BTreeSet::from([first]), vec![first]);
         while let Some(at) = next.pop() {
-            let found: Vec<Cell> = neighbours(at).into_iter().filter(|c| left.remove(c)).collect();
+            let found: Vec<GridIndex> =
+                neighbours(at).into_iter().filter(|c| left.remove(c)).collect();
             joined.extend(&found);
             next.extend(found);
         }
@@ -87,14 +88,14 @@ pub(super) fn largest_joined(mut left: BTreeSet<Cell>) -> BTreeSet<Cell> {
 
 /// Points around the part of a window in one of its squares when the pattern is open, a little
 /// inside.
-fn window(cell: Cell, corner: Cell, limits: &Limits) -> Vec<[f64; 2]> {
+fn window(cell: GridIndex, corner: GridIndex, limits: &Limits) -> Vec<[f64; 2]> {
     let (motion, centre) = (limits.opening.motion(cell), centre(cell));
     let inner = |at: [f64; 2]| [0, 1].map(|c| at[c] + ON_BORDER * (centre[c] - at[c]).signum());
     sector(cell, corner, limits).into_iter().map(|at| moved(motion, inner(at))).collect()
 }
 
 /// The part of a window in one of its squares.
-fn sector(cell: Cell, corner: Cell, limits: &Limits) -> Contour {
+fn sector(cell: GridIndex, corner: GridIndex, limits: &Limits) -> Ring {
     let (corner, centre) = (corner.map(f64::from), centre(cell));
     let side = [0, 1].map(|c| limits.window * (centre[c] - corner[c]).signum());
     let arc = (0..=ARC).map(|k| {
@@ -108,18 +109,18 @@ fn sector(cell: Cell, corner: Cell, limits: &Limits) -> Contour {
 /// another one at any of some openings.
 pub(super) fn panels(
     drawing: &Region,
-    loops: &BTreeSet<Cell>,
+    loops: &BTreeSet<GridIndex>,
     limits: &Limits,
     openings: u32,
-) -> BTreeMap<Cell, Region> {
-    let edge = Edge::new(drawing, loops, limits);
-    let parts: BTreeMap<Cell, Region> = edge.parts();
+) -> BTreeMap<GridIndex, Region> {
+    let edge = TrimmedEdge::new(drawing, loops, limits);
+    let parts = edge.parts();
     // Small parts first: they leave the large ones less, and parts of one size, as a mirror
     // exchanges them, leave each other what both want.
-    let size = |cell: &Cell| (1e3 * parts[cell].area()).round() as i64;
-    let mut order: Vec<Cell> = edge.squares.iter().copied().collect();
+    let size = |cell: &GridIndex| (1e3 * parts[cell].area()).round() as i64;
+    let mut order: Vec<GridIndex> = edge.squares.iter().copied().collect();
     order.sort_by_key(size);
-    let mut done: BTreeMap<Cell, Region> = BTreeMap::new();
+    let mut done: BTreeMap<GridIndex, Region> = BTreeMap::new();
     for cell in order {
         if !edge.drawing.contains_key(&cell) {
             done.insert(cell, Region::union_of(vec![corners(cell)]));
@@ -130,7 +131,7 @@ pub(super) fn panels(
         let panel = if part.polygons.is_empty() {
             square.clone()
         } else {
-            let of_other = |other: Cell| match done.get(&other) {
+            let of_other = |other: GridIndex| match done.get(&other) {
                 _ if size(&other) == size(&cell) => {
                     Region::union_of(vec![corners(other)]).union(&parts[&other])
                 }
@@ -155,7 +156,7 @@ pub(super) fn panels(
 }
 
 /// Whether a point is on an edge of a square.
-fn is_on_edge(cell: Cell, at: [f64; 2]) -> bool {
+fn is_on_edge(cell: GridIndex, at: [f64; 2]) -> bool {
     (0..2).any(|c| {
         let along = at[c] - f64::from(cell[c]);
         (along - along.round()).abs() < ON_EDGE && (0.0..=1.0).contains(&along.round())
@@ -172,22 +173,22 @@ fn with_most_of(region: Region, other: &Region) -> Region {
 }
 
 /// The squares of a drawing and what its edge needs.
-struct Edge<'a> {
+struct TrimmedEdge<'a> {
     limits: &'a Limits,
-    squares: BTreeSet<Cell>,
-    hinges: BTreeSet<Pair>,
+    squares: BTreeSet<GridIndex>,
+    hinges: BTreeSet<HingedSquares>,
     /// The drawing around each square that is not inside, as the square sees it when the pattern is
     /// open.
-    drawing: BTreeMap<Cell, Region>,
+    drawing: BTreeMap<GridIndex, Region>,
 }
 
-impl<'a> Edge<'a> {
-    fn new(drawing: &Region, loops: &BTreeSet<Cell>, limits: &'a Limits) -> Self {
+impl<'a> TrimmedEdge<'a> {
+    fn new(drawing: &Region, loops: &BTreeSet<GridIndex>, limits: &'a Limits) -> Self {
         let squares = squares(loops);
-        let hinges: BTreeSet<Pair> = loops.iter().flat_map(|at| pairs(*at)).collect();
+        let hinges: BTreeSet<HingedSquares> = loops.iter().flat_map(|at| pairs(*at)).collect();
         let is_hinged =
-            |cell: Cell, other: Cell| hinges.contains(&[cell.min(other), cell.max(other)]);
-        let seen = |cell: &Cell| {
+            |cell: GridIndex, other: GridIndex| hinges.contains(&[cell.min(other), cell.max(other)]);
+        let seen = |cell: &GridIndex| {
             let motion = limits.opening.motion(*cell);
             let at = moved(motion, centre(*cell));
             let is_inside = neighbours(*cell).into_iter().all(|other| is_hinged(*cell, other))
@@ -205,18 +206,18 @@ impl<'a> Edge<'a> {
     }
 
     /// The hinges of a square.
-    fn hinges_of(&self, cell: Cell) -> impl Iterator<Item = &Pair> {
+    fn hinges_of(&self, cell: GridIndex) -> impl Iterator<Item = &HingedSquares> {
         let pairs = neighbours(cell).map(|other| [cell.min(other), cell.max(other)]);
         pairs.into_iter().filter_map(|pair| self.hinges.get(&pair))
     }
 
     /// A square in the drawing, with the windows of its hinges, apart from neighbours with which it does not hang together.
-    fn square(&self, cell: Cell) -> Region {
-        let is_apart = |other: &Cell| {
+    fn square(&self, cell: GridIndex) -> Region {
+        let is_apart = |other: &GridIndex| {
             let pair = [cell.min(*other), cell.max(*other)];
             self.squares.contains(other) && !self.hinges.contains(&pair)
         };
-        let strip = |other: Cell| {
+        let strip = |other: GridIndex| {
             // Corners that are rounded in the scene come no nearer to the tip of a cut.
             let half = 0.495 * self.limits.slit;
             let [x, y] = corners(other)[0];
@@ -237,17 +238,19 @@ impl<'a> Edge<'a> {
 
     /// The parts of every panel: missing squares, row by row, in the neighbour that has the most of
     /// the drawing there.
-    fn parts(&self) -> BTreeMap<Cell, Region> {
-        let mut owner: BTreeMap<Cell, Cell> = self.squares.iter().map(|c| (*c, *c)).collect();
+    fn parts(&self) -> BTreeMap<GridIndex, Region> {
+        let mut owner: BTreeMap<GridIndex, GridIndex> =
+            self.squares.iter().map(|c| (*c, *c)).collect();
         for _ in 0..RINGS {
-            let around: BTreeSet<Cell> = owner.keys().flat_map(|cell| neighbours(*cell)).collect();
+            let around: BTreeSet<GridIndex> =
+                owner.keys().flat_map(|cell| neighbours(*cell)).collect();
             let missing = around.into_iter().filter(|cell| !owner.contains_key(cell));
-            let found: Vec<(Cell, Cell)> = missing
+            let found: Vec<(GridIndex, GridIndex)> = missing
                 .filter_map(|cell| {
                     let square = Region::union_of(vec![corners(cell)]);
                     let owners = neighbours(cell).into_iter().filter_map(|n| owner.get(&n));
                     let fits = owners.filter(|of| !self.is_beyond_hinge(**of, cell));
-                    let area = |of: &Cell| self.drawing[of].common(&square).area();
+                    let area = |of: &GridIndex| self.drawing[of].common(&square).area();
                     let best = fits.map(|of| (area(of), *of));
                     let (area, of) = best.max_by(|one, two| one.0.total_cmp(&two.0))?;
                     (area > LEAST_PART).then_some((cell, of))
@@ -255,7 +258,7 @@ impl<'a> Edge<'a> {
                 .collect();
             owner.extend(found);
         }
-        let part = |cell: &Cell| {
+        let part = |cell: &GridIndex| {
             let own = owner.iter().filter(|(at, of)| *of == cell && *at != cell);
             let squares = own.map(|(at, _)| corners(*at)).collect();
             let drawing = self.drawing.get(cell);
@@ -267,7 +270,7 @@ impl<'a> Edge<'a> {
 
     /// Whether a missing square is on the far side of a hinge of a panel from its partner: it would
     /// close the cut along the window.
-    fn is_beyond_hinge(&self, panel: Cell, missing: Cell) -> bool {
+    fn is_beyond_hinge(&self, panel: GridIndex, missing: GridIndex) -> bool {
         self.hinges_of(panel).any(|pair| {
             let partner = if pair[0] == panel { pair[1] } else { pair[0] };
             let across = usize::from(pair[1][0] > pair[0][0]);
@@ -282,15 +285,16 @@ impl<'a> Edge<'a> {
     /// hinges.
     fn passed(
         &self,
-        cell: Cell,
+        cell: GridIndex,
         part: &Region,
         openings: u32,
-        of_other: impl Fn(Cell) -> Region,
+        of_other: impl Fn(GridIndex) -> Region,
     ) -> Region {
-        let mut passed: Vec<Contour> =
+        let mut passed: Vec<Ring> =
             self.hinges_of(cell).map(|pair| self.slit(cell, pair)).collect();
-        let is_near =
-            |other: &&Cell| **other != cell && (0..2).all(|c| (other[c] - cell[c]).abs() <= NEAR);
+        let is_near = |other: &&GridIndex| {
+            **other != cell && (0..2).all(|c| (other[c] - cell[c]).abs() <= NEAR)
+        };
         for other in self.squares.iter().filter(is_near) {
             let panel = of_other(*other);
             let [from, to] = panel.bounds();
@@ -310,7 +314,7 @@ impl<'a> Edge<'a> {
     }
 
     /// The cut along the flat side of a window, on the side without material.
-    fn slit(&self, cell: Cell, pair: &Pair) -> Contour {
+    fn slit(&self, cell: GridIndex, pair: &HingedSquares) -> Ring {
         let along = usize::from(pair[1][0] == pair[0][0]);
         let (at, out) = (hinge(*pair).map(f64::from), 1 - along);
         let beyond = if at[out] > centre(cell)[out] { self.limits.gap } else { -self.limits.gap };
@@ -324,8 +328,8 @@ impl<'a> Edge<'a> {
 }
 
 /// The contours of opened panels.
-pub(super) fn opened(panels: &BTreeMap<Cell, Region>, opening: Opening) -> Vec<Contour> {
-    let moved = |(cell, panel): (&Cell, &Region)| {
+pub(super) fn opened(panels: &BTreeMap<GridIndex, Region>, opening: Opening) -> Vec<Ring> {
+    let moved = |(cell, panel): (&GridIndex, &Region)| {
         let motion = opening.motion(*cell);
         panel.map(|at| moved(motion, at)).polygons.into_iter().flatten()
     };

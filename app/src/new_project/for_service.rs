@@ -2,7 +2,7 @@
 //! enough for the service.
 
 use anyhow::{Context, Result, ensure};
-use design::sheet::cutting_process::Hole;
+use design::sheet::cutting_process::HoleSize;
 use output::cut_file::{Features, Machines};
 use scene::SceneConfig;
 use std::f64::consts::FRAC_PI_2;
@@ -30,7 +30,7 @@ pub(super) fn for_service(config: &mut SceneConfig, name: &str, thickness: f64) 
     // A hole is wider than the slit that ends in it.
     let hole = least.hole.max(process.slit_width + 2.0 * ROOM);
     if 2.0 * process.hinge(narrowest, FRAC_PI_2).fillet_ratio * narrowest < hole {
-        process.hole = Hole::Diameter(hole);
+        process.hole = HoleSize::Diameter(hole);
         // Its law is for holes that grow with the ligament.
         if let Some(surrogate) = &mut config.surrogate {
             surrogate.springback = None;

@@ -7,7 +7,10 @@
 //! encloses, less what lines inside of it enclose.
 
 use contour::ContourBuilder;
-use design::geometry::{polygon, region::Region};
+use design::geometry::{
+    polygon,
+    region::{Region, Ring},
+};
 use image::{
     DynamicImage, ImageDecoder, ImageFormat, ImageReader, ImageResult, Rgba, RgbaImage,
     guess_format,
@@ -47,9 +50,6 @@ pub(super) struct Traced {
     /// Whether its shape is a drawn line.
     pub is_line: bool,
 }
-
-/// A closed line in a picture (pixels).
-type Ring = Vec<[f64; 2]>;
 
 /// Traces a picture at a difference, over the largest one, if one is given.
 pub(super) fn traced(picture: &[u8], threshold: Option<f64>) -> Result<Traced, Fault> {

@@ -1,7 +1,7 @@
 //! Collecting, writing and reading a database, and the errors on the way.
 
 use crate::common::{collect, row, rows};
-use dataset::{Database, Fidelity, Part, Rejection, Row};
+use dataset::{Database, Fidelity, Rejection, Row, Subset};
 use mesher::Tier;
 use std::path::{Path, PathBuf};
 use support::sealed_json;
@@ -72,7 +72,7 @@ fn rows_are_sorted_by_job_and_lambda_so_that_the_file_is_the_same() {
 #[test]
 fn the_parts_contain_every_row_exactly_once() {
     let database = collect(rows()).unwrap();
-    let parts = [Part::Training, Part::Validation, Part::Test].map(|part| database.part(part));
+    let parts = [Subset::Training, Subset::Validation, Subset::Test].map(|it| database.part(it));
     assert_eq!(parts.each_ref().map(Vec::len), [40, 5, 5]);
     let mut all: Vec<Row> = parts.into_iter().flatten().collect();
     all.sort_by(|a, b| a.job.cmp(&b.job));

@@ -1,7 +1,7 @@
 //! Databases of two meshes: some of the rays are there on a finer one too.
 
 use crate::common::{collect, finer, on_tier, row, rows};
-use dataset::{Collected, Database, DatasetError, Fidelity, FinerMesh, Part, Row, SplitPlan};
+use dataset::{Collected, Database, DatasetError, Fidelity, FinerMesh, Row, SplitPlan, Subset};
 use mesher::Tier;
 
 fn both() -> Database {
@@ -72,7 +72,7 @@ fn counts_split_and_domain_are_of_the_rays_alone() {
 #[test]
 fn the_parts_have_no_row_of_the_finer_mesh() {
     let (database, alone) = (both(), collect(rows()).unwrap());
-    for part in [Part::Training, Part::Validation, Part::Test] {
+    for part in [Subset::Training, Subset::Validation, Subset::Test] {
         assert_eq!(database.part(part), alone.part(part));
     }
 }

@@ -23,7 +23,7 @@ use support::vectors;
 
 /// The end of an increment of a path.
 #[derive(Clone, Debug)]
-pub struct Increment {
+pub struct LoadIncrement {
     /// Load parameter: the fraction of the loads or, if they are prescribed, of the stroke and the
     /// support motions.
     pub at: f64,
@@ -185,7 +185,7 @@ impl EquilibriumSolver {
     ///
     /// # Panics
     /// If the grids of sheet and solver differ.
-    pub fn increments(&self, sheet: HingedSheet) -> Vec<Increment> {
+    pub fn increments(&self, sheet: HingedSheet) -> Vec<LoadIncrement> {
         let (_, start) = self.before_loads(sheet);
         let follower = self.follower(sheet, PathStage::Actuation, start);
         let ends = follower.into_iter().flat_map(|mut follower| {
@@ -236,9 +236,9 @@ impl Follower<'_> {
         }
     }
 
-    fn end_of_increment(&self) -> Increment {
+    fn end_of_increment(&self) -> LoadIncrement {
         let state = self.last_state(Order::Forces);
-        Increment {
+        LoadIncrement {
             at: self.last.position.at,
             load_factor: state.load_factor,
             configuration: state.configuration,

@@ -14,14 +14,14 @@ use support::Point;
 const ARC: f64 = 0.2;
 
 /// The corners of a closed polygon.
-pub type Contour = Vec<[f64; 2]>;
+pub type Ring = Vec<[f64; 2]>;
 
 /// Disjoint polygons. The contours of each are its outline, counter-clockwise, and its holes,
 /// clockwise.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Region {
     /// The contours of each polygon.
-    pub polygons: Vec<Vec<Contour>>,
+    pub polygons: Vec<Vec<Ring>>,
 }
 
 /// How an offset region turns about its corners.
@@ -35,12 +35,12 @@ pub enum Corners {
 
 impl Region {
     /// The points around which contours in any order and direction go an odd number of times.
-    pub fn even_odd(contours: Vec<Contour>) -> Self {
+    pub fn even_odd(contours: Vec<Ring>) -> Self {
         Self { polygons: contours.simplify_shape(FillRule::EvenOdd) }
     }
 
     /// The union of polygons without holes, counter-clockwise.
-    pub fn union_of(contours: Vec<Contour>) -> Self {
+    pub fn union_of(contours: Vec<Ring>) -> Self {
         Self { polygons: contours.simplify_shape(FillRule::NonZero) }
     }
 
@@ -89,12 +89,12 @@ impl Region {
 
     /// Without holes.
     pub fn filled(&self) -> Self {
-        let outer = |contours: &Vec<Contour>| contours[..1].to_vec();
+        let outer = |contours: &Vec<Ring>| contours[..1].to_vec();
         Self { polygons: self.polygons.iter().map(outer).collect() }
     }
 
     /// All contours.
-    pub fn contours(&self) -> impl Iterator<Item = &Contour> {
+    pub fn contours(&self) -> impl Iterator<Item = &Ring> {
         self.polygons.iter().flatten()
     }
 
@@ -131,7 +131,7 @@ impl Region {
 
     /// The image under a map that keeps the orientation.
     pub fn map(&self, map: impl Fn(Point) -> Point) -> Self {
-        let contour = |contour: &Contour| contour.iter().map(|point| map(*point)).collect();
+        let contour = |contour: &Ring| contour.iter().map(|point| map(*point)).collect();
         let polygons = self.polygons.iter();
         Self { polygons: polygons.map(|contours| contours.iter().map(contour).collect()).collect() }
     }
@@ -139,7 +139,7 @@ impl Region {
     /// Without the corners that are nearer than `tolerance` to the line between their neighbours
     /// (Douglas and Peucker, Cartographica 10, 1973, 112), unless they are `fixed`.
     pub fn simplified(&self, tolerance: f64, fixed: impl Fn(Point) -> bool) -> Self {
-        let simple: Vec<Contour> =
+        let simple: Vec<Ring> =
             self.contours().map(|contour| simplified(contour, tolerance, &fixed)).collect();
         // A gap narrower than the tolerance has become a line.
         Self { polygons: simple.simplify_shape(FillRule::NonZero) }
@@ -148,14 +148,14 @@ impl Region {
 
 /// Intersection over union of what one sees of opened panels and a drawing with its holes: gaps up
 /// to 8 % of the longer side of the drawing, or to the width of a panel, are closed.
-pub fn seen(panels: Vec<Contour>, drawing: &Region) -> f64 {
+pub fn seen(panels: Vec<Ring>, drawing: &Region) -> f64 {
     let closed = as_seen(panels, drawing);
     closed.common(drawing).area() / closed.union(drawing).area()
 }
 
 /// What one sees of opened panels: without the gaps between them. Every panel grows by itself: of a
 /// union of panels that touch, a corner is lost now and then on the way back.
-pub fn as_seen(panels: Vec<Contour>, drawing: &Region) -> Region {
+pub fn as_seen(panels: Vec<Ring>, drawing: &Region) -> Region {
     const GAP: f64 = 0.04;
     // Squares that are turned by a right angle are half a side from the middle of their gap; panels
     // are trimmed.
@@ -169,20 +169,20 @@ pub fn as_seen(panels: Vec<Contour>, drawing: &Region) -> Region {
     Region::union_of(grown.flatten().collect()).offset(-gap, Corners::Round)
 }
 
-fn simplified(contour: &[Point], tolerance: f64, fixed: impl Fn(Point) -> bool) -> Contour {
+fn simplified(contour: &[Point], tolerance: f64, fixed: impl Fn(Point) -> bool) -> Ring {
     let all = 0..contour.len();
     let mut ends: Vec<usize> = all.clone().filter(|i| fixed(contour[*i])).collect();
     let first = *ends.first().unwrap_or(&0);
     let from_first = |i: &usize| polygon::distance(contour[*i], contour[first]);
     let Some(far) = all.max_by(|i, j| from_first(i).total_cmp(&from_first(j))) else {
-        return Contour::new();
+        return Ring::new();
     };
     ends.extend([first, far]);
     ends.sort_unstable();
     ends.dedup();
-    let ring: Contour = contour.iter().chain(contour).copied().collect();
+    let ring: Ring = contour.iter().chain(contour).copied().collect();
     let next = ends.iter().skip(1).copied().chain([contour.len() + ends[0]]);
-    let mut kept = Contour::new();
+    let mut kept = Ring::new();
     for (from, to) in std::iter::zip(&ends, next) {
         keep(&ring[*from..=to], tolerance, &mut kept);
     }
@@ -190,7 +190,7 @@ fn simplified(contour: &[Point], tolerance: f64, fixed: impl Fn(Point) -> bool) 
 }
 
 /// Adds the kept points of a line but its last.
-fn keep(line: &[Point], tolerance: f64, kept: &mut Contour) {
+fn keep(line: &[Point], tolerance: f64, kept: &mut Ring) {
     let (first, last) = (line[0], line[line.len() - 1]);
     let off = |i: &usize| polygon::distance_to_segment(line[*i], first, last);
     let farthest = (1..line.len() - 1).max_by(|i, j| off(i).total_cmp(&off(j)));
@@ -207,7 +207,7 @@ fn keep(line: &[Point], tolerance: f64, kept: &mut Contour) {
 mod tests {
     use super::*;
 
-    fn square(at: f64, side: f64) -> Contour {
+    fn square(at: f64, side: f64) -> Ring {
         vec![[at, at], [at + side, at], [at + side, at + side], [at, at + side]]
     }
 
@@ -231,7 +231,7 @@ mod tests {
     #[test]
     fn points_on_a_straight_edge_are_left_out() {
         let edge = (0..100).map(|i| [0.1 * f64::from(i), 1e-3 * f64::from(i % 2)]);
-        let contour: Contour = edge.chain([[10.0, 0.0], [10.0, 10.0], [0.0, 10.0]]).collect();
+        let contour: Ring = edge.chain([[10.0, 0.0], [10.0, 10.0], [0.0, 10.0]]).collect();
         let simple = Region { polygons: vec![vec![contour]] }.simplified(0.01, |_| false);
         assert_eq!(simple.polygons[0][0].len(), 4);
         close(simple.area(), 100.0);
@@ -241,7 +241,7 @@ mod tests {
     fn panels_with_narrow_gaps_are_seen_as_one() {
         let panel =
             |[x, y]: [f64; 2]| square(0.0, 9.6).iter().map(|p| [p[0] + x, p[1] + y]).collect();
-        let panels = |columns: i32| -> Vec<Contour> {
+        let panels = |columns: i32| -> Vec<Ring> {
             let places = (0..columns).flat_map(|i| (0..3).map(move |j| [i, j]));
             places.map(|at| panel(at.map(|k| 10.0 * f64::from(k)))).collect()
         };

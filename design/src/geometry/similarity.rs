@@ -42,11 +42,11 @@ pub struct Similarity {
 }
 
 /// A point and its image.
-pub type Pair = [c64; 2];
+pub type Correspondence = [c64; 2];
 
 impl Similarity {
     /// The least-squares fit; `None` if the points, or their images, coincide.
-    pub fn least_squares(pairs: &[Pair], scale: Scale) -> Option<Self> {
+    pub fn least_squares(pairs: &[Correspondence], scale: Scale) -> Option<Self> {
         let count = pairs.len() as f64;
         let mean = |i: usize| pairs.iter().map(|pair| pair[i]).sum::<c64>() / count;
         let (from, to) = (mean(0), mean(1));
@@ -64,7 +64,7 @@ impl Similarity {
     }
 
     /// Distance of the image from its prediction, as a length before the motion.
-    pub fn residual(&self, [p, m]: &Pair) -> f64 {
+    pub fn residual(&self, [p, m]: &Correspondence) -> f64 {
         (m - self.of(*p)).norm() / self.scale()
     }
 
@@ -96,7 +96,7 @@ mod tests {
     const MOTION: Similarity =
         Similarity { turn: c64::new(0.6, 1.7), shift: c64::new(-300.0, 40.0) };
 
-    fn pairs(motion: Similarity) -> Vec<Pair> {
+    fn pairs(motion: Similarity) -> Vec<Correspondence> {
         let numbers = (0..60).map(f64::from);
         let points = numbers.map(|i| c64::new(37.0 * i % 101.0, 53.0 * i % 89.0));
         points.map(|point| [point, motion.of(point)]).collect()

@@ -3,7 +3,7 @@
 
 use crate::objective::{
     hinge_measures::add_by_states,
-    shape::Shape,
+    shape::ShapeDistance,
     term::{Deployed, Term, TermGradient, Weighted, in_words},
 };
 use indexmap::IndexMap;
@@ -15,7 +15,7 @@ pub type TermValues = IndexMap<String, f64>;
 #[derive(Clone, Debug)]
 pub struct Objective {
     /// The Chamfer distance, with the weight 1.
-    pub shape: Shape,
+    pub shape: ShapeDistance,
     /// The functionals of (17)-(19); reported with zero weight too.
     pub functionals: Vec<Weighted>,
     /// The penalties; zero without weight.

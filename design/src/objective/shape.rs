@@ -17,7 +17,7 @@ use support::Point;
 
 /// The distance of the deployed outline to a target.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Shape {
+pub struct ShapeDistance {
     /// T (mm); not empty.
     pub target: Vec<Point>,
     /// w_cov of the distance (dimensionless).
@@ -27,7 +27,7 @@ pub struct Shape {
     pub centred: bool,
 }
 
-impl Term for Shape {
+impl Term for ShapeDistance {
     fn name(&self) -> &'static str {
         "chamfer"
     }
@@ -44,7 +44,7 @@ impl Term for Shape {
     }
 }
 
-impl Shape {
+impl ShapeDistance {
     /// The distance to the points `target` (mm) with the coverage weight 1/2 of the paper.
     pub fn new(target: Vec<Point>) -> Self {
         Self { target, coverage_weight: 0.5, centred: false }

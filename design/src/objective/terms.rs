@@ -22,7 +22,7 @@ pub use symmetric_difference::SymmetricDifference;
 
 use crate::{
     hinge_law::{DamageMeasure, HingeLaw},
-    objective::{loss::Objective, shape::Shape, term::Weighted},
+    objective::{loss::Objective, shape::ShapeDistance, term::Weighted},
     sheet::cut_sheet::AttachmentPoint,
 };
 use schemars::JsonSchema;
@@ -131,9 +131,12 @@ impl ObjectiveConfig {
         }
     }
 
-    fn shape(&self, context: &TermContext) -> Shape {
-        let mut shape =
-            Shape { target: Vec::new(), coverage_weight: COVERAGE, centred: context.law.is_none() };
+    fn shape(&self, context: &TermContext) -> ShapeDistance {
+        let mut shape = ShapeDistance {
+            target: Vec::new(),
+            coverage_weight: COVERAGE,
+            centred: context.law.is_none(),
+        };
         shape.target = shape.placed(context.target, None);
         shape
     }

@@ -62,7 +62,7 @@ mod tests {
     use super::*;
     use crate::objective::design_problem::Model;
     use crate::objective::loss::Objective;
-    use crate::objective::shape::Shape;
+    use crate::objective::shape::ShapeDistance;
     use crate::optimise::adam::Adam;
     use crate::pattern::cut_pattern::Outline;
     use crate::pattern::design_vector::WidthChart;
@@ -81,7 +81,7 @@ mod tests {
             options: SheetOptions { hinge_point: HingePoint::Corner, process: process.into() },
             model: Model::Ideal { opening: 0.5 },
             objective: Objective {
-                shape: Shape::new(vec![[3.0, 3.0]]),
+                shape: ShapeDistance::new(vec![[3.0, 3.0]]),
                 functionals: Vec::new(),
                 penalties: Vec::new(),
             },

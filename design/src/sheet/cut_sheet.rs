@@ -14,7 +14,7 @@ pub use crate::sheet::panel::{Panel, PanelPoint};
 use crate::{
     geometry::{
         plane::{I, complex, cross, dot, point},
-        region::{Contour, Region},
+        region::{Region, Ring},
     },
     pattern::{
         cut_pattern::{CutPattern, Outline},
@@ -201,7 +201,7 @@ impl Sheet {
 
     /// The edge of the flat sheet: its outer contours, counter-clockwise, and its holes, clockwise
     /// (mm).
-    pub fn outlines(&self) -> Vec<Contour> {
+    pub fn outlines(&self) -> Vec<Ring> {
         /// Gaps between panels that are rounding errors (mm).
         const ROUNDING: f64 = 1e-3;
         /// Depth of the notches that sharp corners leave where such gaps were (mm).

@@ -6,7 +6,7 @@ use serde::{Deserialize, Deserializer, Serialize, de::Error as _};
 
 /// The hole at the tip of a main cut.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Hole {
+pub enum HoleSize {
     /// Its radius as a multiple of w_lig.
     Ratio(f64),
     /// Its diameter (mm), the same at every hinge: a drill, or the smallest hole of a laser.
@@ -19,7 +19,7 @@ pub enum Hole {
 #[schemars(with = "ProcessKeys")]
 pub struct CuttingProcess {
     /// The hole at the tip of every main cut.
-    pub hole: Hole,
+    pub hole: HoleSize,
     /// Width of the slits (mm).
     pub slit_width: f64,
     /// Radius of a hinge's window (mm).
@@ -66,8 +66,8 @@ impl TryFrom<ProcessKeys> for CuttingProcess {
 
     fn try_from(keys: ProcessKeys) -> Result<Self, Self::Error> {
         let hole = match (keys.fillet_ratio, keys.hole_diameter) {
-            (Some(ratio), None) => Hole::Ratio(ratio),
-            (None, Some(diameter)) => Hole::Diameter(diameter),
+            (Some(ratio), None) => HoleSize::Ratio(ratio),
+            (None, Some(diameter)) => HoleSize::Diameter(diameter),
             (None, None) | (Some(_), Some(_)) => {
                 return Err(
                     "[process] needs either fillet_ratio (radius of the hole over w_lig) or hole_diameter (mm)",
@@ -82,8 +82,8 @@ impl TryFrom<ProcessKeys> for CuttingProcess {
 impl From<CuttingProcess> for ProcessKeys {
     fn from(CuttingProcess { hole, slit_width, r_win }: CuttingProcess) -> Self {
         let [fillet_ratio, hole_diameter] = match hole {
-            Hole::Ratio(ratio) => [Some(ratio), None],
-            Hole::Diameter(diameter) => [None, Some(diameter)],
+            HoleSize::Ratio(ratio) => [Some(ratio), None],
+            HoleSize::Diameter(diameter) => [None, Some(diameter)],
         };
         Self { fillet_ratio, hole_diameter, slit_width, kerf: (), r_win }
     }
@@ -92,7 +92,7 @@ impl From<CuttingProcess> for ProcessKeys {
 impl From<HingeConstants> for CuttingProcess {
     fn from(constants: HingeConstants) -> Self {
         Self {
-            hole: Hole::Ratio(constants.fillet_ratio),
+            hole: HoleSize::Ratio(constants.fillet_ratio),
             slit_width: constants.kerf,
             r_win: constants.r_win,
         }
@@ -106,8 +106,8 @@ impl CuttingProcess {
             w_lig,
             alpha,
             fillet_ratio: match self.hole {
-                Hole::Ratio(ratio) => ratio,
-                Hole::Diameter(diameter) => 0.5 * diameter / w_lig,
+                HoleSize::Ratio(ratio) => ratio,
+                HoleSize::Diameter(diameter) => 0.5 * diameter / w_lig,
             },
             kerf: self.slit_width,
             r_win: self.r_win,
@@ -117,16 +117,16 @@ impl CuttingProcess {
     /// Radius of the hole of a hinge of width `w_lig` (mm).
     pub fn hole_radius(&self, w_lig: f64) -> f64 {
         match self.hole {
-            Hole::Ratio(ratio) => ratio * w_lig,
-            Hole::Diameter(diameter) => 0.5 * diameter,
+            HoleSize::Ratio(ratio) => ratio * w_lig,
+            HoleSize::Diameter(diameter) => 0.5 * diameter,
         }
     }
 
     /// Derivative of the radius of a hinge's hole in w_lig.
     pub(crate) fn radius_by_width(&self) -> f64 {
         match self.hole {
-            Hole::Ratio(ratio) => ratio,
-            Hole::Diameter(_) => 0.0,
+            HoleSize::Ratio(ratio) => ratio,
+            HoleSize::Diameter(_) => 0.0,
         }
     }
 }

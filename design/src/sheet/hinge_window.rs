@@ -14,7 +14,7 @@ use support::Point;
 
 /// The window of a hinge in the flat sheet.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Window {
+pub struct HingeWindow {
     /// Foot of the perpendicular from O to the edge of the secondary cut: the origin of the hinge
     /// frame (mm).
     pub foot: Point,
@@ -32,7 +32,7 @@ const TOUCH: f64 = 1e-6;
 /// Area outside of the panels that is rounding, over the square of the radius.
 const OUTSIDE: f64 = 1e-5;
 
-impl Window {
+impl HingeWindow {
     pub(crate) fn new(hinge: &Hinge, r_win: f64) -> Self {
         let [x, y] = hinge.e_sec;
         let foot = [hinge.tip[0] - hinge.w_lig * y, hinge.tip[1] + hinge.w_lig * x];
@@ -96,9 +96,9 @@ impl Window {
 mod tests {
     use super::*;
 
-    fn window(foot: [f64; 2], angle_deg: f64) -> Window {
+    fn window(foot: [f64; 2], angle_deg: f64) -> HingeWindow {
         let (sin, cos) = f64::to_radians(angle_deg).sin_cos();
-        Window { foot, e_sec: [cos, sin], radius: 100.0 }
+        HingeWindow { foot, e_sec: [cos, sin], radius: 100.0 }
     }
 
     #[test]

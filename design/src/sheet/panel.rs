@@ -1,7 +1,7 @@
 //! A rigid panel of the flat sheet: its centroid, its area and their derivatives.
 
 use crate::geometry::plane::{I, complex, cross, dot, point};
-use crate::geometry::region::Contour;
+use crate::geometry::region::Ring;
 use crate::pattern::grid::{NW, SE, SW};
 use crate::sheet::topology::Trim;
 use faer::c64;
@@ -158,7 +158,7 @@ impl Panel {
 }
 
 /// The polygon that a panel is, counter-clockwise (mm).
-pub fn boundary(corners: &[Point; 4], trim: Option<&Trim>) -> Contour {
+pub fn boundary(corners: &[Point; 4], trim: Option<&Trim>) -> Ring {
     let along = |c: usize, to: usize| corners[to][c] - corners[SW][c];
     let in_cell =
         |[x, y]: &Point| [0, 1].map(|c| corners[SW][c] + x * along(c, SE) + y * along(c, NW));

@@ -3,7 +3,7 @@
 use crate::{
     geometry::{
         polygon::{area, common},
-        region::{Contour, Region},
+        region::{Region, Ring},
     },
     sheet::{cut_sheet::Sheet, kinematics::deployed_boundaries},
 };
@@ -37,7 +37,7 @@ fn neighbours(sheet: &Sheet) -> impl Iterator<Item = (usize, usize)> {
 }
 
 /// The maximum common area of any two polygons (mm^2).
-fn most_shared(polygons: Vec<Contour>) -> f64 {
+fn most_shared(polygons: Vec<Ring>) -> f64 {
     let regions = polygons.into_iter().map(|polygon| Region::union_of(vec![polygon]));
     let regions: Vec<_> = regions.map(|region| (region.bounds(), region)).collect();
     let met = |[low, high]: &[[f64; 2]; 2], [from, to]: &[[f64; 2]; 2]| {

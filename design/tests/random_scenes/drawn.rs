@@ -7,7 +7,7 @@ use design::equilibrium::supports::{Dof, Load, Support};
 use design::hinge_law::{Contact, HingeLaw, LinearLaw, SurrogateLaw};
 use design::objective::design_problem::{DesignProblem, Mechanics, Model};
 use design::objective::loss::Objective;
-use design::objective::shape::Shape;
+use design::objective::shape::ShapeDistance;
 use design::pattern::coordinates::PatternCoordinates;
 use design::pattern::cut_pattern::Outline;
 use design::pattern::design_vector::{DesignVector, WidthChart};
@@ -239,7 +239,7 @@ impl Drawn {
                 solver,
             })),
             objective: Objective {
-                shape: Shape::new(target.collect()),
+                shape: ShapeDistance::new(target.collect()),
                 functionals: Vec::new(),
                 penalties: Vec::new(),
             },

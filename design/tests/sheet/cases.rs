@@ -6,7 +6,7 @@ use serde_json::Value;
 
 /// Hinge constants that a sheet needs besides w_lig and alpha; no case depends on them.
 pub const PROCESS: CuttingProcess =
-    CuttingProcess { hole: Hole::Ratio(0.16), slit_width: 0.2, r_win: 100.0 };
+    CuttingProcess { hole: HoleSize::Ratio(0.16), slit_width: 0.2, r_win: 100.0 };
 
 pub const AT_CORNER: SheetOptions =
     SheetOptions { hinge_point: HingePoint::Corner, process: PROCESS };

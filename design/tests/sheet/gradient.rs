@@ -72,7 +72,7 @@ fn a_pulled_sheet_with_path_functionals() {
         options: AT_CORNER,
         model: mechanics(law, solver(grid, &supports, &loads, get(&case, "nsteps"))),
         objective: Objective {
-            shape: Shape {
+            shape: ShapeDistance {
                 target: get(&case, "target"),
                 coverage_weight: get(&case, "w_cov"),
                 centred: false,

@@ -14,7 +14,7 @@ pub use design::pattern::coordinates::PatternCoordinates;
 pub use design::pattern::cut_pattern::CutPattern;
 pub use design::pattern::grid::Endpoint;
 pub use design::sheet::cut_sheet::*;
-pub use design::sheet::cutting_process::{CuttingProcess, Hole};
+pub use design::sheet::cutting_process::{CuttingProcess, HoleSize};
 pub use design::sheet::ideal_deployment::ideal_deployment;
 pub use design::sheet::kinematics::{deployed, deployed_corners, hinge_deformations};
 pub use design::*;

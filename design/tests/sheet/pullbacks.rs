@@ -58,7 +58,7 @@ fn gradients_in_the_sheet_are_pulled_back_to_the_design() {
             // A hole of the same diameter at every hinge has a radius over w_lig that depends on
             // the width.
             let mut options = SheetOptions { hinge_point, ..AT_TIP };
-            options.process.hole = Hole::Diameter(0.3);
+            options.process.hole = HoleSize::Diameter(0.3);
             // One point of each kind besides the centroid.
             let points = [
                 attached(1, PanelPoint::Middle([0, 1])),

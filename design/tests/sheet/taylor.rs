@@ -79,7 +79,7 @@ pub fn problem(model: Model, hinge_point: HingePoint) -> DesignProblem {
         options: SheetOptions { hinge_point, ..AT_TIP },
         model,
         objective: Objective {
-            shape: Shape { target: target.collect(), coverage_weight: 0.5, centred: true },
+            shape: ShapeDistance { target: target.collect(), coverage_weight: 0.5, centred: true },
             functionals: vec![
                 Weighted::new(300.0, damage),
                 Weighted::new(1e4, Compression { temperature: 0.02 }),
@@ -206,7 +206,7 @@ fn surrogate_law_at_the_tip_pulled_and_driven() {
 fn surrogate_law_with_drilled_holes() {
     let model = held(tiny(), 20.0, East::Pulled(3.0));
     let mut problem = problem(model, HingePoint::CutTip);
-    problem.options.process.hole = Hole::Diameter(4.0);
+    problem.options.process.hole = HoleSize::Diameter(4.0);
     assert_order_two(&problem, &start());
 }
 

@@ -4,8 +4,8 @@
 //! work of the reactions.
 
 use crate::{
-    Cause, Ccx, DeckRun, FailureKind, Frame, Layout, Solution, SolveError, Solver, ToolVersions,
-    WindowModel, WindowSolve, deck, read_dat, read_if_there, samples, time_reached,
+    Cause, Ccx, DeckRun, FailureKind, Layout, OutputFrame, Solution, SolveError, Solver,
+    ToolVersions, WindowModel, WindowSolve, deck, read_dat, read_if_there, samples, time_reached,
 };
 use mesher::{Gmsh, WindowMesh, WindowShape};
 use std::path::Path;
@@ -125,7 +125,7 @@ impl Solver for CalculiX {
 
 impl WindowModel<'_> {
     /// The printed increments of an attempt in `folder`.
-    fn frames(&self, folder: &Path) -> Result<Vec<Frame>, SolveError> {
+    fn frames(&self, folder: &Path) -> Result<Vec<OutputFrame>, SolveError> {
         let output = read_if_there(&folder.join(JOB).with_extension("dat"))?;
         read_dat(&output, self.layout()).map_err(|error| Cause::Machine.error(error))
     }

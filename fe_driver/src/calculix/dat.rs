@@ -23,7 +23,7 @@ pub struct Layout {
 
 /// The printed output of one converged increment.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Frame {
+pub struct OutputFrame {
     /// Total time: the fraction of the path.
     pub lambda: f64,
     /// Total internal energy: stored plus dissipated (N mm).
@@ -90,7 +90,7 @@ pub(crate) trait Printed: Sized {
 }
 
 /// Reads the complete frames of a window, in order of lambda.
-pub fn read_dat(bytes: &[u8], layout: Layout) -> Result<Vec<Frame>, Fault> {
+pub fn read_dat(bytes: &[u8], layout: Layout) -> Result<Vec<OutputFrame>, Fault> {
     read_printed(bytes, &layout)
 }
 
@@ -142,7 +142,7 @@ pub(crate) fn read_printed<F: Printed>(bytes: &[u8], layout: &F::Layout) -> Resu
     }
 }
 
-impl Printed for Frame {
+impl Printed for OutputFrame {
     type Layout = Layout;
 
     fn begin(lambda: f64) -> Self {

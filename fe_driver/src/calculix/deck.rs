@@ -6,8 +6,8 @@
 //! energy between *printed* increments and it would otherwise be wrong.
 
 use crate::{
-    DeformationPath, DrivenArc, Frame, StepControl, even_lambdas, write_element, write_increments,
-    write_material, write_motion, write_nodes, write_set,
+    DeformationPath, DrivenArc, OutputFrame, StepControl, even_lambdas, write_element,
+    write_increments, write_material, write_motion, write_nodes, write_set,
 };
 use hinge::SheetMaterial;
 use mesher::{WindowMesh, vtk_grid};
@@ -99,7 +99,7 @@ const VTK_ORDER: [usize; 6] = [0, 1, 2, 3, 5, 4];
 impl WindowModel<'_> {
     /// The undeformed window with the fields of an increment that printed the displacements of all
     /// nodes.
-    pub(crate) fn grid(&self, frame: &Frame) -> UnstructuredGrid {
+    pub(crate) fn grid(&self, frame: &OutputFrame) -> UnstructuredGrid {
         let points = self.mesh.recipe.element().gauss_points();
         let strains = || frame.peeq.chunks(points);
         let volumes = || self.mesh.gauss_volumes.iter();

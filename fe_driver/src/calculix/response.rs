@@ -1,6 +1,6 @@
 //! Converts printed frames to hinge samples: energy, work, forces, damage.
 
-use crate::{Frame, PanelMotion, WindowModel, rotated};
+use crate::{OutputFrame, PanelMotion, WindowModel, rotated};
 use hinge::{HingeDeformation, HingeDesign, HingeForces, HingeSample, SheetMaterial};
 use mesher::WindowMesh;
 use std::f64::consts::PI;
@@ -10,7 +10,7 @@ use std::f64::consts::PI;
 const PEAK_FRACTION: f64 = 0.01;
 
 /// One sample per frame, in the order of the frames.
-pub(crate) fn samples(model: &WindowModel, frames: &[Frame]) -> Vec<HingeSample> {
+pub(crate) fn samples(model: &WindowModel, frames: &[OutputFrame]) -> Vec<HingeSample> {
     let (mesh, material) = (model.mesh, model.material);
     let mut before = (HingeDeformation::default(), HingeForces::default());
     let energies = frames.iter().map(|frame| frame.energy.abs());

@@ -10,8 +10,8 @@
 //! same job twice; it is counted once.
 
 use crate::{
-    Event, Solve, SolveListError, SolveStore, Solved, ToolVersions, WindowSolve, entries, host,
-    now, read_json, write_json,
+    Solve, SolveEvent, SolveListError, SolveStore, Solved, ToolVersions, WindowSolve, entries,
+    host, now, read_json, write_json,
 };
 use serde::{Deserialize, Serialize};
 use serde_json::json;
@@ -196,7 +196,7 @@ impl EventLog {
     }
 
     /// Appends an event of `job`.
-    pub(crate) fn note(&mut self, job: &str, event: &Event) -> Result<(), FileError> {
+    pub(crate) fn note(&mut self, job: &str, event: &SolveEvent) -> Result<(), FileError> {
         let line = json!({ "time": now(), "job": job, "event": event });
         self.file.write_all(format!("{line}\n").as_bytes()).map_err(FileError::at(&self.path))
     }

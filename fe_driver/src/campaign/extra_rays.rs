@@ -16,7 +16,7 @@ use support::{Fault, csv_table, refuse};
 /// One row of the file: a hinge and the end of its ray.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Row {
+struct RayRow {
     w_lig: f64,
     alpha_deg: f64,
     eta_a: f64,
@@ -28,7 +28,7 @@ struct Row {
 /// Reads the rays of hinges with the constants `common`.
 pub(crate) fn read_extra_rays(path: &Path, common: &HingeConstants) -> Result<Vec<Ray>, Fault> {
     let mut rays = Vec::new();
-    let (_, rows) = csv_table::read::<Row>(path)?;
+    let (_, rows) = csv_table::read::<RayRow>(path)?;
     for (i, (_, row)) in rows.into_iter().enumerate() {
         let ray = row.ray(common);
         if let Some(reason) = row.defect(&ray) {
@@ -42,7 +42,7 @@ pub(crate) fn read_extra_rays(path: &Path, common: &HingeConstants) -> Result<Ve
     Ok(rays)
 }
 
-impl Row {
+impl RayRow {
     fn ray(&self, common: &HingeConstants) -> Ray {
         let theta = self.theta_deg.to_radians();
         let constants = HingeConstants {

@@ -1,7 +1,7 @@
 //! Running a campaign: the list of its solves, and a ledger of them.
 
 use crate::{
-    Campaign, CampaignFolder, Event, EventLog, FailureKind, Index, Job, Shard, SolveListError,
+    Campaign, CampaignFolder, EventLog, FailureKind, Index, Job, Shard, SolveEvent, SolveListError,
     SolveRecord, Solver, Tally, ToolVersions, WindowSolve, Workers, now,
 };
 use hinge::HingeSample;
@@ -28,7 +28,7 @@ pub struct RunOptions {
 
 /// The progress of a run.
 #[derive(Clone, Debug)]
-pub struct Progress {
+pub struct CampaignProgress {
     /// All jobs of the shard, including the jobs of earlier runs.
     pub tally: Tally,
     /// Estimated remaining time (s), from the rate of this run; `None` before it has closed a job.
@@ -49,8 +49,8 @@ pub fn run(
     solver: &dyn Solver,
     options: &RunOptions,
     stop: &AtomicBool,
-    progress: &mut dyn FnMut(&Progress),
-) -> Result<Progress, SolveListError> {
+    progress: &mut dyn FnMut(&CampaignProgress),
+) -> Result<CampaignProgress, SolveListError> {
     let workers = Workers {
         solver,
         count: options.workers,
@@ -68,7 +68,7 @@ pub fn run(
         .collect();
     for job in jobs.iter().filter(|_| options.retry) {
         if job.folder.reopen::<WindowSolve>(|_| true)? {
-            history.note(&job.id, &Event::Reopened)?;
+            history.note(&job.id, &SolveEvent::Reopened)?;
         }
     }
     let mut ledger = Ledger::new(history, &jobs)?;
@@ -86,7 +86,7 @@ struct Ledger<'a> {
     jobs: &'a [Job],
     /// The current record of every job.
     records: Vec<Option<SolveRecord>>,
-    /// [`Progress::disturbed`].
+    /// [`CampaignProgress::disturbed`].
     disturbed: BTreeMap<String, String>,
     history: EventLog,
     start: Instant,
@@ -107,30 +107,30 @@ impl<'a> Ledger<'a> {
         })
     }
 
-    fn note(&mut self, index: usize, event: Event) -> Result<(), FileError> {
+    fn note(&mut self, index: usize, event: SolveEvent) -> Result<(), FileError> {
         let id = &self.jobs[index].id;
-        if !matches!(event, Event::Found(_)) {
+        if !matches!(event, SolveEvent::Found(_)) {
             self.history.note(id, &event)?;
         }
         match event {
-            Event::Found(record) => self.records[index] = record,
-            Event::Disturbed { reason, .. } => {
+            SolveEvent::Found(record) => self.records[index] = record,
+            SolveEvent::Disturbed { reason, .. } => {
                 self.disturbed.insert(id.clone(), reason);
             }
-            Event::Ended { record, .. } => {
+            SolveEvent::Ended { record, .. } => {
                 self.disturbed.remove(id);
                 self.records[index] = Some(record);
             }
-            Event::Started { .. } | Event::Reopened | Event::Restored => {}
+            SolveEvent::Started { .. } | SolveEvent::Reopened | SolveEvent::Restored => {}
         }
         Ok(())
     }
 
-    fn progress(&self) -> Progress {
+    fn progress(&self) -> CampaignProgress {
         let tally = tally(self.jobs, &self.records);
         let closed = tally.closed() - self.closed_before;
         let pace = self.start.elapsed().as_secs_f64() / closed as f64;
-        Progress {
+        CampaignProgress {
             seconds_left: (closed > 0).then(|| pace * tally.to_run() as f64),
             tally,
             disturbed: self.disturbed.clone(),
@@ -223,7 +223,7 @@ pub fn restore(
         home.write_solve(solve)?;
         let rows_hash = home.write_samples(&window.samples)?;
         home.write_record(&record(window, rows_hash))?;
-        history.note(&window.id, &Event::Restored)?;
+        history.note(&window.id, &SolveEvent::Restored)?;
         restored.written += 1;
     }
     Ok(restored)

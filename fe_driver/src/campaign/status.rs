@@ -159,7 +159,7 @@ pub struct Throughput {
 
 /// The state of a campaign.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Status {
+pub struct CampaignStatus {
     /// Name of the campaign.
     pub name: String,
     /// Numbers of jobs by their state.
@@ -203,14 +203,14 @@ pub fn known_parts(
 }
 
 /// The state of the campaign in `folder`, as it was last run.
-pub fn status(folder: &Path) -> Result<Status, SolveListError> {
+pub fn status(folder: &Path) -> Result<CampaignStatus, SolveListError> {
     let folder = CampaignFolder(folder.to_owned());
     let Index { name, jobs, .. } = folder.index()?;
     let (store, mut tally) = (folder.store(), Tally::default());
     for id in jobs {
         tally.add_state(&id, &store.solve(&id).state()?);
     }
-    Ok(Status { name, throughput: tally.throughput(), tally })
+    Ok(CampaignStatus { name, throughput: tally.throughput(), tally })
 }
 
 // The plan of a run: the jobs that it would solve, and why.

@@ -5,10 +5,10 @@
 //! increment, because CalculiX accumulates the total internal energy between *printed* increments.
 
 use crate::{
-    GRAVITY, Held, SECONDS, STIFFNESS, SheetNodes, SheetProblem, real, write_amplitude,
+    GRAVITY, HeldPanel, SECONDS, STIFFNESS, SheetNodes, SheetProblem, real, write_amplitude,
     write_element, write_increments, write_material, write_nodes, write_set,
 };
-use mesher::{ElementKind, Part, SheetMesh, SheetShape, Side};
+use mesher::{ElementKind, MeshPart, SheetMesh, SheetShape, Side};
 use std::iter::zip;
 use support::add_line;
 
@@ -110,14 +110,14 @@ impl SheetModel<'_> {
                 of_kind.for_each(|(element, nodes)| write_element(d, element, nodes));
             }
         }
-        let of = |wanted: &dyn Fn(Part) -> bool| -> Vec<usize> {
+        let of = |wanted: &dyn Fn(MeshPart) -> bool| -> Vec<usize> {
             let elements = 0..mesh.elements.len();
             elements.filter(|e| wanted(mesh.part(*e))).collect()
         };
-        write_set(d, "ELSET", "PANELS", &of(&|part| matches!(part, Part::Panel(_))));
-        write_set(d, "ELSET", "WINDOWS", &of(&|part| matches!(part, Part::Window(_))));
+        write_set(d, "ELSET", "PANELS", &of(&|part| matches!(part, MeshPart::Panel(_))));
+        write_set(d, "ELSET", "WINDOWS", &of(&|part| matches!(part, MeshPart::Window(_))));
         (0..self.problem.shape.windows.len()).for_each(|hinge| {
-            let elements = of(&|part| part == Part::Window(hinge));
+            let elements = of(&|part| part == MeshPart::Window(hinge));
             write_set(d, "ELSET", &hinge_set(hinge), &elements)
         })
     }
@@ -243,7 +243,7 @@ impl SheetModel<'_> {
     }
 
     fn write_boundary(&self, d: &mut String) {
-        for (i, Held { motion, .. }) in self.problem.held.iter().enumerate() {
+        for (i, HeldPanel { motion, .. }) in self.problem.held.iter().enumerate() {
             add_line!(d, "*BOUNDARY,AMPLITUDE=LOADS");
             for (axis, value) in motion.iter().enumerate() {
                 if let Some(value) = value {

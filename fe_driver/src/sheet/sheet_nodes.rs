@@ -1,8 +1,8 @@
 //! The nodes of a meshed sheet at which it is held, pulled and supported by a table.
 
-use crate::{Held, OutOfPlaneRestraint, Place, Pulled, SheetProblem, real, write_element};
+use crate::{HeldPanel, OutOfPlaneRestraint, Place, Pulled, SheetProblem, real, write_element};
 use hinge::STANDARD_GRAVITY;
-use mesher::{Panels, Part, SheetMesh};
+use mesher::{MeshPart, Panels, SheetMesh};
 use std::collections::BTreeSet;
 use support::{Fault, add_line, fault};
 
@@ -49,7 +49,7 @@ impl SheetNodes {
             let node = match found.bodies.get(*panel) {
                 Some(body) => body.first,
                 None => {
-                    let nearest = mesh.nearest(Part::Panel(*panel), *at);
+                    let nearest = mesh.nearest(MeshPart::Panel(*panel), *at);
                     mesh.middle[nearest.ok_or_else(|| no_nodes(*panel))?]
                 }
             };
@@ -80,7 +80,7 @@ impl SheetNodes {
                     .collect();
                 let windows = problem.shape.windows.iter().enumerate();
                 let in_windows = windows.flat_map(|(h, window)| {
-                    let nodes = mesh.plane_nodes(Part::Window(h)).into_iter();
+                    let nodes = mesh.plane_nodes(MeshPart::Window(h)).into_iter();
                     nodes.filter(move |node| {
                         let [x, y] = window.frame.local(mesh.plane.nodes[*node]);
                         x.hypot(y) > SUPPORTED * window.design.w_lig
@@ -108,8 +108,8 @@ fn no_nodes(panel: usize) -> Fault {
 }
 
 /// The plane nodes of a support.
-fn held_nodes(support: &Held, mesh: &SheetMesh) -> Result<Vec<usize>, Fault> {
-    let part = Part::Panel(support.panel);
+fn held_nodes(support: &HeldPanel, mesh: &SheetMesh) -> Result<Vec<usize>, Fault> {
+    let part = MeshPart::Panel(support.panel);
     let all = mesh.panels[support.panel].clone();
     let nodes = match support.place {
         Place::Panel => all,

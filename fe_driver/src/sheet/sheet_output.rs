@@ -1,7 +1,7 @@
 //! What CalculiX prints of a sheet in an increment.
 
 use crate::{Block, Printed, SheetModel, at_node, force_set, hinge_set, numbers};
-use mesher::{ElementKind, Part};
+use mesher::{ElementKind, MeshPart};
 
 /// What a complete increment of a sheet prints.
 #[derive(Clone, Debug)]
@@ -44,8 +44,8 @@ impl SheetLayout {
             hinges: model.problem.shape.windows.len(),
             points: points
                 .map(|(element, nodes)| match mesh.part(element) {
-                    Part::Window(_) => ElementKind::of(nodes).gauss_points(),
-                    Part::Panel(_) => 0,
+                    MeshPart::Window(_) => ElementKind::of(nodes).gauss_points(),
+                    MeshPart::Panel(_) => 0,
                 })
                 .collect(),
             is_dynamic: model.problem.dynamic,

@@ -41,7 +41,7 @@ pub enum Place {
 
 /// A panel that is held.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Held {
+pub struct HeldPanel {
     /// Index of the panel.
     pub panel: usize,
     /// The part of it that is held; also out of the plane.
@@ -74,7 +74,7 @@ pub struct SheetProblem {
     #[serde(rename = "keeping")]
     pub restraint: OutOfPlaneRestraint,
     /// Supports.
-    pub held: Vec<Held>,
+    pub held: Vec<HeldPanel>,
     /// Loads.
     pub pulled: Vec<Pulled>,
     /// The stroke at the end of the path (mm) if it is prescribed: the work of the full loads over
@@ -148,7 +148,7 @@ impl SheetProblem {
 
     /// An error if the problem has no solution.
     pub fn validate(&self) -> Result<(), Fault> {
-        let moves = |held: &Held| held.motion.into_iter().flatten().any(|shift| shift != 0.0);
+        let moves = |held: &HeldPanel| held.motion.into_iter().flatten().any(|shift| shift != 0.0);
         if self.total_load() == 0.0 && !self.held.iter().any(moves) {
             refuse!("nothing pulls the sheet: it needs a load, or a support that moves");
         }
@@ -174,7 +174,7 @@ impl SheetProblem {
     /// Whether its supports alone keep the sheet from turning out of its plane: a clamp, or points
     /// that are not on one line.
     fn is_held_upright(&self) -> bool {
-        let point = |held: &Held| match held.place {
+        let point = |held: &HeldPanel| match held.place {
             Place::Point(at) => Some(at),
             Place::Panel | Place::Line(_) => None,
         };

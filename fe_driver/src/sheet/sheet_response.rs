@@ -5,7 +5,7 @@ use crate::{
 };
 use faer::Side;
 use faer::mat::Mat;
-use mesher::Part;
+use mesher::MeshPart;
 use std::array::from_fn;
 use std::iter::zip;
 
@@ -16,7 +16,7 @@ const FREEDOMS: usize = 3;
 pub(crate) fn states(model: &SheetModel, frames: &[SheetFrame]) -> SheetStates {
     let mut windows = vec![Vec::new(); model.problem.shape.windows.len()];
     for element in 0..model.mesh.elements.len() {
-        if let Part::Window(window) = model.mesh.part(element) {
+        if let MeshPart::Window(window) = model.mesh.part(element) {
             windows[window].push(element);
         }
     }
@@ -126,9 +126,9 @@ impl SheetModel<'_> {
 
     fn surface(&self, frame: &SheetFrame) -> SheetSurface {
         let (faces, panels) = (&self.mesh.plane.faces, self.problem.shape.panels.len());
-        let part = |part: &Part| match part {
-            Part::Panel(panel) => *panel,
-            Part::Window(window) => panels + window,
+        let part = |part: &MeshPart| match part {
+            MeshPart::Panel(panel) => *panel,
+            MeshPart::Window(window) => panels + window,
         };
         let strain = |face| {
             let above = (face..self.mesh.elements.len()).step_by(faces.len());

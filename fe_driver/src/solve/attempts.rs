@@ -62,7 +62,7 @@ pub(crate) struct Workers<'a, S: Solve = WindowSolve> {
 /// An event at a solve of a list, as a history states it.
 #[derive(Clone, Debug, Serialize)]
 #[serde(rename_all = "kebab-case")]
-pub(crate) enum Event {
+pub(crate) enum SolveEvent {
     /// Its record when a worker takes it up; another process may have changed it since the list was
     /// made. No history states it.
     #[serde(skip)]
@@ -93,7 +93,7 @@ impl<S: Solve> Workers<'_, S> {
         &self,
         jobs: &[Job<S>],
         stop: &AtomicBool,
-        note: &mut dyn FnMut(usize, Event) -> Result<(), FileError>,
+        note: &mut dyn FnMut(usize, SolveEvent) -> Result<(), FileError>,
     ) -> Result<(), SolveListError> {
         let work = |index: usize, reports: &Reports<_>| {
             let report = |event| reports.send((index, Ok(event)));
@@ -111,7 +111,7 @@ impl<S: Solve> Workers<'_, S> {
         &self,
         job: &Job<S>,
         halt: &AtomicBool,
-        report: &dyn Fn(Event),
+        report: &dyn Fn(SolveEvent),
     ) -> Result<(), SolveListError> {
         let may_start = || {
             let in_time = |deadline| Instant::now() < deadline;
@@ -121,19 +121,19 @@ impl<S: Solve> Workers<'_, S> {
             return Ok(());
         }
         let mut record = job.folder.ended::<S>()?;
-        report(Event::Found(record.clone()));
+        report(SolveEvent::Found(record.clone()));
         let mut disturbed = 0;
         while may_start()
             && disturbed < TRIES
             && let Some(attempt) =
                 (record.as_ref()).map_or(Some(AttemptKind::Requested), |record| record.next)
         {
-            report(Event::Started { attempt });
+            report(SolveEvent::Started { attempt });
             let Some(event) = self.attempt(job, attempt, record.clone(), halt)? else {
                 return Ok(());
             };
             match &event {
-                Event::Ended { record: ended, .. } => {
+                SolveEvent::Ended { record: ended, .. } => {
                     disturbed = 0;
                     record = Some(ended.clone());
                 }
@@ -156,7 +156,7 @@ impl<S: Solve> Workers<'_, S> {
         attempt: AttemptKind,
         before: Option<SolveRecord>,
         halt: &AtomicBool,
-    ) -> Result<Option<Event>, SolveListError> {
+    ) -> Result<Option<SolveEvent>, SolveListError> {
         let start = Instant::now();
         let solve = job.solve.attempted(attempt);
         job.folder.write_solve(&job.solve)?;
@@ -175,7 +175,7 @@ impl<S: Solve> Workers<'_, S> {
                 Cause::Problem(kind) => Some((kind, error.message)),
                 Cause::Machine => {
                     job.folder.keep_work()?;
-                    return Ok(Some(Event::Disturbed { attempt, reason: error.message }));
+                    return Ok(Some(SolveEvent::Disturbed { attempt, reason: error.message }));
                 }
                 Cause::Run => {
                     let (job, source) = (job.id.clone(), Box::new(error));
@@ -186,7 +186,7 @@ impl<S: Solve> Workers<'_, S> {
         let now = job.folder.ended::<S>()?;
         if let Some(record) = now.filter(|now| before.as_ref() != Some(now)) {
             job.folder.remove_work()?;
-            return Ok(Some(Event::Ended { attempt, record }));
+            return Ok(Some(SolveEvent::Ended { attempt, record }));
         }
         let mut record = before.unwrap_or_default();
         let reached = solution.samples.reached();
@@ -208,7 +208,7 @@ impl<S: Solve> Workers<'_, S> {
             job.folder.keep_work()?;
         }
         job.folder.write_record(&record)?;
-        Ok(Some(Event::Ended { attempt, record }))
+        Ok(Some(SolveEvent::Ended { attempt, record }))
     }
 }
 

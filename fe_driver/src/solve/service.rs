@@ -2,7 +2,7 @@
 //! equilibrium, a study.
 
 use crate::{
-    Event, Job, Solve, SolveListError, SolveStore, Solved, Solver, ToolVersions, WindowSolve,
+    Job, Solve, SolveEvent, SolveListError, SolveStore, Solved, Solver, ToolVersions, WindowSolve,
     Workers,
 };
 use std::collections::{HashMap, HashSet};
@@ -62,11 +62,13 @@ impl<S: Solve> SolveService<'_, S> {
         (self.progress)(done, all);
         workers.work_through(&jobs, self.stop, &mut |index, event| {
             match event {
-                Event::Found(Some(record)) | Event::Ended { record, .. } if record.is_closed() => {
+                SolveEvent::Found(Some(record)) | SolveEvent::Ended { record, .. }
+                    if record.is_closed() =>
+                {
                     done += 1;
                     (self.progress)(done, all);
                 }
-                Event::Disturbed { reason, .. } => disturbed = Some((index, reason)),
+                SolveEvent::Disturbed { reason, .. } => disturbed = Some((index, reason)),
                 _ => {}
             }
             Ok(())

@@ -68,7 +68,7 @@ impl SolveRecord {
 
 /// A record with the id of its solve: records do not change places unnoticed.
 #[derive(Serialize, Deserialize)]
-struct Named<R> {
+struct JobRecord<R> {
     job: String,
     #[serde(flatten)]
     record: R,
@@ -164,7 +164,7 @@ impl SolveFolder {
     /// it is the record of another solve.
     pub fn record(&self) -> Result<Option<SolveRecord>, FileError> {
         let path = self.0.join(RECORD);
-        match read_json::<Named<SolveRecord>>(&path)? {
+        match read_json::<JobRecord<SolveRecord>>(&path)? {
             Some(named) if named.job != self.id() => {
                 let (other, hint) = (named.job, "delete it, and the next run solves this one");
                 Err(damaged(&path, format!("it is the record of the solve {other}: {hint}")))
@@ -213,7 +213,7 @@ impl SolveFolder {
 
     pub(crate) fn write_record(&self, record: &SolveRecord) -> Result<(), FileError> {
         let job = self.id();
-        write_json(&self.0.join(RECORD), &Named { job, record })
+        write_json(&self.0.join(RECORD), &JobRecord { job, record })
     }
 
     /// The record of the solve if its files are consistent; `None` if no attempt has ended, or if

@@ -3,12 +3,12 @@
 
 use crate::common::film;
 use fe_driver::{
-    AttemptKind, CalculiX, DeformationPath, FailureKind, Held, HingePath, OutOfPlaneRestraint,
+    AttemptKind, CalculiX, DeformationPath, FailureKind, HeldPanel, HingePath, OutOfPlaneRestraint,
     Place, Pulled, SheetProblem, SheetSolve, SheetState, SheetStates, Solution, Solve,
     SolveService, SolveStore, Solver, WindowProblem, WindowSolve,
 };
 use hinge::{HingeDeformation, HingeDesign, SheetMaterial};
-use mesher::{Frame, MeshError, PanelShape, Panels, PlacedWindow, PlaneRecipe, SheetShape, Tier};
+use mesher::{Frame, MeshError, PanelPolygon, Panels, PlacedWindow, PlaneRecipe, SheetShape, Tier};
 use std::f64::consts::PI;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
@@ -40,7 +40,7 @@ fn problem(keeping: OutOfPlaneRestraint, stroke: f64) -> SheetProblem {
         panic!("the tier has a structured mesh");
     };
     let (left, right) = (WIDTH - 0.5 * KERF, WIDTH + 0.5 * KERF);
-    let panel = |low: f64, high: f64| PanelShape {
+    let panel = |low: f64, high: f64| PanelPolygon {
         corners: vec![[low, 0.0], [high, 0.0], [high, HEIGHT], [low, HEIGHT]],
         marks: Vec::new(),
     };
@@ -66,7 +66,7 @@ fn problem(keeping: OutOfPlaneRestraint, stroke: f64) -> SheetProblem {
         tier: Tier::Tiny,
         material: thin(),
         restraint: keeping,
-        held: vec![Held { panel: 0, place: Place::Panel, motion: [Some(0.0); 2] }],
+        held: vec![HeldPanel { panel: 0, place: Place::Panel, motion: [Some(0.0); 2] }],
         pulled: vec![Pulled { panel: 1, at, force: [2.0, 0.0] }],
         stroke: Some(stroke),
         down: None,
@@ -199,7 +199,7 @@ fn a_screw_holds_a_plate_on_a_board() {
     (mounted.shape.model, mounted.stroke) = (Panels::Rigid, None);
     mounted.shape.windows[0].bump = 0.02;
     mounted.pulled.clear();
-    let pin = |panel, at| Held { panel, place: Place::Point(at), motion: [Some(3.0), None] };
+    let pin = |panel, at| HeldPanel { panel, place: Place::Point(at), motion: [Some(3.0), None] };
     mounted.held.push(pin(1, [90.0, 10.0]));
     let end = solved(&mounted).states.pop().unwrap();
     let [x, _, z] = end.panels[1].moved([90.0, 10.0]);

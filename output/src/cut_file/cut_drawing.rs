@@ -3,7 +3,7 @@
 use crate::display::{Colour, Shape, Style, Text};
 use design::geometry::{
     polygon::{area, mean},
-    region::Contour,
+    region::Ring,
 };
 use serde::{Deserialize, Serialize};
 
@@ -147,7 +147,7 @@ impl CutDrawing {
 }
 
 /// The panels of a deployed sheet with the given corners (mm), and their numbers, at 1:1.
-pub fn deployed_panels(panels: &[Contour]) -> CutDrawing {
+pub fn deployed_panels(panels: &[Ring]) -> CutDrawing {
     let mut drawing = CutDrawing::default();
     for corners in panels {
         drawing.add(Layer::Panels, Shape::Polygon(corners.clone()));

@@ -30,7 +30,7 @@ use design::{
         polygon::{
             bounds, distance, distance_between_segments, distance_to_segment, edges, side, size,
         },
-        region::Contour,
+        region::Ring,
     },
     objective::design_problem::Deployment,
     pattern::cut_pattern::CutPattern,
@@ -73,7 +73,7 @@ pub struct CutLines {
     /// One per hinge.
     pub holes: Vec<Hole>,
     /// Contours of the sheet: outer ones counter-clockwise, holes clockwise (mm).
-    pub outlines: Vec<Contour>,
+    pub outlines: Vec<Ring>,
     /// Width of the slits (mm).
     pub slit_width: f64,
     /// How the sheet is cut.
@@ -250,7 +250,7 @@ impl CutLines {
     }
 
     /// The path of the tool's centre around the sheet (mm).
-    pub fn tool_outlines(&self) -> Vec<Contour> {
+    pub fn tool_outlines(&self) -> Vec<Ring> {
         self.outlines_at(0.5 * self.kerf())
     }
 
@@ -266,7 +266,7 @@ impl CutLines {
     }
 
     /// The outlines moved outwards by a distance (mm).
-    pub(super) fn outlines_at(&self, off: f64) -> Vec<Contour> {
+    pub(super) fn outlines_at(&self, off: f64) -> Vec<Ring> {
         self.outlines.iter().map(|outline| moved_outwards(outline, off)).collect()
     }
 
@@ -286,7 +286,7 @@ impl CutLines {
 }
 
 /// A contour moved outwards by a distance (mm).
-fn moved_outwards(outline: &[[f64; 2]], off: f64) -> Contour {
+fn moved_outwards(outline: &[[f64; 2]], off: f64) -> Ring {
     let count = outline.len();
     let outward = |k: usize| {
         let (p, q) = (outline[k % count], outline[(k + 1) % count]);

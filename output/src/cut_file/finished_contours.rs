@@ -12,7 +12,7 @@ use crate::{
 };
 use design::geometry::{
     polygon::{distance, distance_to_segment, edges},
-    region::Contour,
+    region::Ring,
 };
 use scene::drawing::bulged::Vertex;
 use std::f64::consts::PI;
@@ -25,7 +25,7 @@ impl CutLines {
     pub(super) fn add_contours(&self, drawing: &mut CutDrawing, kerf: f64) {
         let inset = 0.5 * kerf;
         let end = |slit: &Slit, which: usize| {
-            slit.hinges[which].map(|hinge| End {
+            slit.hinges[which].map(|hinge| SlitEnd {
                 at: slit.ends[which],
                 towards: slit.ends[1 - which],
                 radius: self.holes[hinge].radius - inset,
@@ -34,11 +34,11 @@ impl CutLines {
         };
         for slit in &self.slits {
             if let (Some(from), Some(to)) = (end(slit, 0), end(slit, 1)) {
-                let contour = [from, to].iter().flat_map(End::around).collect();
+                let contour = [from, to].iter().flat_map(SlitEnd::around).collect();
                 drawing.add(Layer::Cut, Shape::Contour(contour));
             }
         }
-        let open: Vec<End> = (self.slits.iter())
+        let open: Vec<SlitEnd> = (self.slits.iter())
             .filter(|slit| slit.hinges[1].is_none())
             .filter_map(|slit| end(slit, 0))
             .collect();
@@ -49,7 +49,7 @@ impl CutLines {
 }
 
 /// The hole at the end of a slit.
-struct End {
+struct SlitEnd {
     at: [f64; 2],
     /// Another point of the slit's line.
     towards: [f64; 2],
@@ -57,7 +57,7 @@ struct End {
     half_width: f64,
 }
 
-impl End {
+impl SlitEnd {
     /// The angle of the slit at the centre of the hole, and half of the angle of its mouth (rad).
     fn mouth(&self) -> [f64; 2] {
         let [dx, dy] = [0, 1].map(|i| self.towards[i] - self.at[i]);
@@ -95,7 +95,7 @@ impl End {
 }
 
 /// The outlines of a sheet with a notch for each open slit.
-fn notched(outlines: &[Contour], open: &[End]) -> Vec<Vec<Vertex>> {
+fn notched(outlines: &[Ring], open: &[SlitEnd]) -> Vec<Vec<Vertex>> {
     let all = outlines.iter().flat_map(|outline| edges(outline));
     let sides: Vec<[[f64; 2]; 2]> = all.map(|(p, q)| [p, q]).collect();
     let mut notches: Vec<Vec<(f64, [Vertex; 5])>> = vec![Vec::new(); sides.len()];
@@ -111,7 +111,7 @@ fn notched(outlines: &[Contour], open: &[End]) -> Vec<Vec<Vertex>> {
         notches[at].push((distance(sides[at][0], first), notch));
     }
     let mut sides = sides.into_iter().zip(notches);
-    let notched = |outline: &Contour| {
+    let notched = |outline: &Ring| {
         let mut contour = Vec::new();
         for ([corner, _], mut notches) in sides.by_ref().take(outline.len()) {
             contour.push((corner, 0.0));
@@ -129,8 +129,8 @@ mod tests {
     use design::geometry::polygon::area;
     use scene::drawing::bulged::flattened;
 
-    fn end(at: [f64; 2], towards: [f64; 2]) -> End {
-        End { at, towards, radius: 1.5, half_width: 0.4 }
+    fn end(at: [f64; 2], towards: [f64; 2]) -> SlitEnd {
+        SlitEnd { at, towards, radius: 1.5, half_width: 0.4 }
     }
 
     /// Area of a hole with the beginning of its slit, up to the distance `length` from its centre.
@@ -143,7 +143,7 @@ mod tests {
     fn a_slot_has_the_area_of_slit_and_holes() {
         let ends = [[1.0, 2.0], [21.0, 17.0]];
         let ends = [end(ends[0], ends[1]), end(ends[1], ends[0])];
-        let slot: Vec<_> = ends.iter().flat_map(End::around).collect();
+        let slot: Vec<_> = ends.iter().flat_map(SlitEnd::around).collect();
         let exact = 2.0 * removed(12.5);
         // Chords are inside of their arcs.
         let ratio = area(&flattened(&slot, true)) / exact;

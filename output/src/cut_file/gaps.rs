@@ -5,7 +5,7 @@
 
 use design::geometry::{
     polygon::{distance_between_segments, distance_to_outline},
-    region::Contour,
+    region::Ring,
 };
 use support::{Fault, ensure};
 
@@ -19,7 +19,7 @@ pub(super) struct Cut {
 }
 
 /// An error if cuts leave less than `least` (mm) between them, or a hole and the outline do.
-pub(super) fn check(mut cuts: Vec<Cut>, outlines: &[Contour], least: f64) -> Result<(), Fault> {
+pub(super) fn check(mut cuts: Vec<Cut>, outlines: &[Ring], least: f64) -> Result<(), Fault> {
     for hole in cuts.iter().filter(|cut| cut.ends[0] == cut.ends[1]) {
         let to_outlines = outlines.iter().map(|outline| distance_to_outline(hole.ends[0], outline));
         let gap = to_outlines.fold(f64::INFINITY, f64::min) - hole.radius;

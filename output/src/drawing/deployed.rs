@@ -20,7 +20,7 @@ use scene::{Scene, design_run::Designed, placement::placed};
 
 /// The sheet of a scene in the state that is compared with the target, with the loads there.
 pub fn deployed(scene: &Scene, deployment: &Deployment) -> String {
-    let state = State::new(scene, &deployment.sheet, deployment.final_step());
+    let state = DeployedState::new(scene, &deployment.sheet, deployment.final_step());
     let openings_deg = &state.openings_deg;
     let mean = openings_deg.iter().sum::<f64>() / openings_deg.len() as f64;
     let max = openings_deg.iter().copied().fold(f64::NEG_INFINITY, f64::max);
@@ -39,12 +39,12 @@ pub fn deployment_frames(scene: &Scene, designed: &Designed, most: usize) -> Vec
     let before = states_before(&designed.problem, deployment);
     let all: Vec<&LoadStep> = before.iter().chain(&deployment.path).collect();
     let index = kept(all.len(), most);
-    let states: Vec<State> =
-        (index.iter()).map(|&i| State::new(scene, &deployment.sheet, all[i])).collect();
-    let extent: Vec<[f64; 2]> = states.iter().flat_map(State::extent).collect();
+    let states: Vec<DeployedState> =
+        (index.iter()).map(|&i| DeployedState::new(scene, &deployment.sheet, all[i])).collect();
+    let extent: Vec<[f64; 2]> = states.iter().flat_map(DeployedState::extent).collect();
     let openings = states.iter().flat_map(|state| state.openings_deg.iter().copied());
     let scale = ColourScale::covering(openings);
-    let frame = |(&i, state): (&usize, &State)| {
+    let frame = |(&i, state): (&usize, &DeployedState)| {
         let place = if scene.hinge.carries_load() {
             format!("load step {i} of {}, load factor {:.2}", all.len() - 1, all[i].load_factor)
         } else {
@@ -55,7 +55,7 @@ pub fn deployment_frames(scene: &Scene, designed: &Designed, most: usize) -> Vec
     std::iter::zip(&index, &states).map(frame).collect()
 }
 
-struct State<'a> {
+struct DeployedState<'a> {
     scene: &'a Scene,
     sheet: &'a Sheet,
     step: &'a LoadStep,
@@ -63,7 +63,7 @@ struct State<'a> {
     openings_deg: Vec<f64>,
 }
 
-impl<'a> State<'a> {
+impl<'a> DeployedState<'a> {
     fn new(scene: &'a Scene, sheet: &'a Sheet, step: &'a LoadStep) -> Self {
         let deformations = hinge_deformations(sheet, &step.configuration);
         Self {

@@ -7,7 +7,7 @@ use crate::{
 };
 use design::sheet::{
     cut_sheet::{Hinge, Sheet},
-    hinge_window::Window,
+    hinge_window::HingeWindow,
 };
 
 /// The flat sheet with its cuts.
@@ -64,7 +64,9 @@ fn cut_lines(canvas: &mut Canvas, cuts: &CutLines) {
 fn ligaments(canvas: &mut Canvas, sheet: &Sheet) {
     let stroke = canvas.stroke(ACCENT, 3.2);
     let ink = canvas.haloed(TEAL).bold();
-    for (number, (hinge, window)) in sheet.hinges.iter().zip(Window::of_sheet(sheet)).enumerate() {
+    for (number, (hinge, window)) in
+        sheet.hinges.iter().zip(HingeWindow::of_sheet(sheet)).enumerate()
+    {
         canvas.line(hinge.tip, window.foot, stroke);
         let height = f64::min(15.0 * canvas.unit, 0.3 * window.radius);
         let [x, y] = number_place(hinge, &window, 0.55 * window.radius);
@@ -75,7 +77,7 @@ fn ligaments(canvas: &mut Canvas, sheet: &Sheet) {
 
 /// The middle of the number of a hinge, on panel B next to the main cut, at the distance `reach`
 /// from the hinge (mm).
-fn number_place(hinge: &Hinge, window: &Window, reach: f64) -> [f64; 2] {
+fn number_place(hinge: &Hinge, window: &HingeWindow, reach: f64) -> [f64; 2] {
     let along = hinge.alpha / 2.0;
     window.point(reach * along.cos(), -reach * along.sin())
 }

@@ -5,9 +5,9 @@ use crate::display::{Anchor, Canvas, Colour, Style, rectangle, trimmed};
 use design::{
     geometry::{
         polygon::{bounds, size},
-        region::Contour,
+        region::Ring,
     },
-    sheet::{cut_sheet::Sheet, hinge_window::Window, topology::Topology},
+    sheet::{cut_sheet::Sheet, hinge_window::HingeWindow, topology::Topology},
 };
 
 /// Colour of main lines and titles.
@@ -58,7 +58,7 @@ pub(crate) struct Page {
 pub(crate) fn panels(
     canvas: &mut Canvas,
     topology: &Topology,
-    boundaries: impl IntoIterator<Item = Contour>,
+    boundaries: impl IntoIterator<Item = Ring>,
     line: Style,
 ) {
     for (k, boundary) in boundaries.into_iter().enumerate() {
@@ -74,7 +74,7 @@ pub(super) fn windows(
     style: impl Fn(usize) -> Style,
     moved: impl Fn(usize, [f64; 2]) -> [f64; 2],
 ) {
-    for (h, (hinge, window)) in sheet.hinges.iter().zip(Window::of_sheet(sheet)).enumerate() {
+    for (h, (hinge, window)) in sheet.hinges.iter().zip(HingeWindow::of_sheet(sheet)).enumerate() {
         for k in hinge.panels() {
             let part = window.inside(&sheet.panels[k]).map(|point| moved(k, point));
             part.contours().for_each(|contour| canvas.polygon(contour, style(h)));

@@ -47,7 +47,7 @@ fn deployed() -> (DesignProblem, Deployment) {
             solver,
         })),
         objective: Objective {
-            shape: Shape::new(vec![[0.0, 0.0]]),
+            shape: ShapeDistance::new(vec![[0.0, 0.0]]),
             functionals: Vec::new(),
             penalties: Vec::new(),
         },

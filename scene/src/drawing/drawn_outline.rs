@@ -27,7 +27,7 @@ const OTHERS: [(&str, &str); 6] = [
 
 /// The outline in a drawing.
 #[derive(Clone, Debug)]
-pub(crate) struct Outline {
+pub(crate) struct DrawnOutline {
     /// Its vertices, y upwards.
     pub vertices: Vec<[f64; 2]>,
     /// The vertices of its holes.
@@ -52,7 +52,7 @@ pub fn numbered(name: &Path) -> (PathBuf, Option<usize>) {
 }
 
 /// The outline in the bytes of a drawing; if it has several, the one with the given number.
-pub(crate) fn of_file(bytes: &[u8], number: Option<usize>) -> Result<Outline, Fault> {
+pub(crate) fn of_file(bytes: &[u8], number: Option<usize>) -> Result<DrawnOutline, Fault> {
     of_text(&text_of(bytes)?, number)
 }
 
@@ -77,7 +77,7 @@ fn text_of(bytes: &[u8]) -> Result<String, Fault> {
     }
 }
 
-pub(super) fn of_text(text: &str, number: Option<usize>) -> Result<Outline, Fault> {
+pub(super) fn of_text(text: &str, number: Option<usize>) -> Result<DrawnOutline, Fault> {
     let mut drawn = Drawn::read(text)?;
     let chosen = drawn.chosen(number)?;
     let gap = drawn.contours[chosen].check()?;
@@ -89,7 +89,7 @@ pub(super) fn of_text(text: &str, number: Option<usize>) -> Result<Outline, Faul
     let vertices = points(chosen);
     let holes = holes.into_iter().map(points).collect();
     let warnings = drawn.warnings.into_iter().chain(left_out).collect();
-    Ok(Outline { vertices, holes, gap, has_unit: drawn.has_unit, warnings })
+    Ok(DrawnOutline { vertices, holes, gap, has_unit: drawn.has_unit, warnings })
 }
 
 /// The contours of a drawing.

@@ -74,12 +74,12 @@ const NOTES: [&str; 22] = [
 ];
 
 /// A record: its kind and its pairs.
-struct Record<'a> {
+struct DxfRecord<'a> {
     kind: &'a str,
     pairs: Vec<(i32, &'a str)>,
 }
 
-impl<'a> Record<'a> {
+impl<'a> DxfRecord<'a> {
     fn text(&self, code: i32) -> &'a str {
         let mut pairs = self.pairs.iter();
         pairs.find(|pair| pair.0 == code).map_or("", |pair| pair.1)
@@ -126,13 +126,13 @@ impl<'a> Record<'a> {
 
 /// Where the coordinates of a block are: the images of the unit vectors and of the origin.
 #[derive(Clone, Copy)]
-struct Place {
+struct BlockTransform {
     x: c64,
     y: c64,
     origin: c64,
 }
 
-impl Place {
+impl BlockTransform {
     fn along(self, p: c64) -> c64 {
         self.x * p.re + self.y * p.im
     }
@@ -148,7 +148,7 @@ pub(super) fn read(text: &str) -> Result<(Vec<Contour>, bool), Fault> {
     let records = records(text)?;
     let mut section = "";
     let mut unit = 0.0;
-    let mut drawing = Drawing {
+    let mut drawing = DxfDrawing {
         // AutoCAD never plots it.
         hidden: vec!["DEFPOINTS".into()],
         blocks: HashMap::new(),
@@ -191,7 +191,7 @@ pub(super) fn read(text: &str) -> Result<(Vec<Contour>, bool), Fault> {
             _ => {}
         }
     }
-    let whole = Place { x: 1.0.into(), y: I, origin: 0.0.into() };
+    let whole = BlockTransform { x: 1.0.into(), y: I, origin: 0.0.into() };
     drawing.draw(entities, whole, 0)?;
     let contours = drawing.contours;
     let all = contours.iter().flat_map(|(points, _)| points.iter().copied());
@@ -208,8 +208,8 @@ pub(super) fn read(text: &str) -> Result<(Vec<Contour>, bool), Fault> {
 }
 
 /// The records of a file, which must be whole; what follows its end is not read.
-fn records(text: &str) -> Result<Vec<Record<'_>>, Fault> {
-    let mut records: Vec<Record> = Vec::new();
+fn records(text: &str) -> Result<Vec<DxfRecord<'_>>, Fault> {
+    let mut records: Vec<DxfRecord> = Vec::new();
     let lines: Vec<&str> = text.lines().map(str::trim).collect();
     let blank = lines.iter().take_while(|line| line.is_empty()).count();
     for (i, pair) in lines[blank..].chunks_exact(2).enumerate() {
@@ -225,7 +225,7 @@ fn records(text: &str) -> Result<Vec<Record<'_>>, Fault> {
         );
         match records.last_mut() {
             _ if (group, value) == (0, "EOF") => return Ok(records),
-            _ if group == 0 => records.push(Record { kind: value, pairs: Vec::new() }),
+            _ if group == 0 => records.push(DxfRecord { kind: value, pairs: Vec::new() }),
             Some(record) => record.pairs.push((group, value)),
             None => {}
         }
@@ -237,8 +237,8 @@ fn records(text: &str) -> Result<Vec<Record<'_>>, Fault> {
 type Points = (Vec<[f64; 2]>, bool);
 
 /// What is drawn of a file.
-struct Drawing<'a> {
-    records: &'a [Record<'a>],
+struct DxfDrawing<'a> {
+    records: &'a [DxfRecord<'a>],
     /// Names of layers.
     hidden: Vec<String>,
     /// Where the records of a block are, from its name on.
@@ -248,9 +248,14 @@ struct Drawing<'a> {
     contours: Vec<Points>,
 }
 
-impl Drawing<'_> {
+impl DxfDrawing<'_> {
     /// Adds the entities among records that are shown, `depth` blocks deep.
-    fn draw(&mut self, among: Range<usize>, place: Place, depth: usize) -> Result<(), Fault> {
+    fn draw(
+        &mut self,
+        among: Range<usize>,
+        place: BlockTransform,
+        depth: usize,
+    ) -> Result<(), Fault> {
         let records = self.records;
         self.drawn += 1 + among.len();
         for i in among {
@@ -279,7 +284,12 @@ impl Drawing<'_> {
     }
 
     /// Adds a block, in rows and columns.
-    fn insert(&mut self, insert: &Record, place: Place, depth: usize) -> Result<(), Fault> {
+    fn insert(
+        &mut self,
+        insert: &DxfRecord,
+        place: BlockTransform,
+        depth: usize,
+    ) -> Result<(), Fault> {
         let Some(block) = self.blocks.get(&insert.name(2)).cloned() else {
             let name = insert.text(2);
             return Err(
@@ -295,15 +305,18 @@ impl Drawing<'_> {
                 (k % columns) as f64 * insert.number(44),
                 (k / columns) as f64 * insert.number(45),
             );
-            let mut own =
-                Place { x: turn * sx, y: turn * I * sy, origin: insert.at(10) + turn * cell };
+            let mut own = BlockTransform {
+                x: turn * sx,
+                y: turn * I * sy,
+                origin: insert.at(10) + turn * cell,
+            };
             own.origin -= own.along(base);
             if insert.number(230) < 0.0 {
                 let [x, y, origin] = [own.x, own.y, own.origin].map(|z| -z.conj());
-                own = Place { x, y, origin };
+                own = BlockTransform { x, y, origin };
             }
             let x = place.along(own.x);
-            let inner = Place { x, y: place.along(own.y), origin: place.of(own.origin) };
+            let inner = BlockTransform { x, y: place.along(own.y), origin: place.of(own.origin) };
             self.draw(block.start + 1..block.end, inner, depth + 1)?;
         }
         Ok(())
@@ -312,7 +325,7 @@ impl Drawing<'_> {
 
 /// The points of an entity, and whether they are closed; `None` if it is a note. `further` are the
 /// records after it.
-fn contour(entity: &Record, further: &[Record]) -> Result<Option<Points>, Fault> {
+fn contour(entity: &DxfRecord, further: &[DxfRecord]) -> Result<Option<Points>, Fault> {
     let centre = entity.at(10);
     // Arcs and polylines that are seen from below are mirrored.
     let below = entity.number(230) < 0.0;
@@ -371,7 +384,7 @@ fn turned(from: f64, to: f64) -> f64 {
 }
 
 /// Points on a B-spline or on a spline through points.
-fn spline_points(entity: &Record) -> Result<Vec<[f64; 2]>, Fault> {
+fn spline_points(entity: &DxfRecord) -> Result<Vec<[f64; 2]>, Fault> {
     let degree = entity.number(71) as usize;
     let knots: Vec<f64> = entity.numbers(40).collect();
     let points = entity.points(10);

@@ -70,10 +70,10 @@ pub(super) fn of(
 #[cfg(test)]
 mod tests {
     use super::Fault;
-    use crate::drawing::drawn_outline::{Outline, of_text};
+    use crate::drawing::drawn_outline::{DrawnOutline, of_text};
 
     /// Contours of squares, each by its lower left corner and its side.
-    fn squares(squares: &[[f64; 3]], number: Option<usize>) -> Result<Outline, Fault> {
+    fn squares(squares: &[[f64; 3]], number: Option<usize>) -> Result<DrawnOutline, Fault> {
         let paths = squares.iter().map(|[x, y, side]| format!("M{x} {y}h{side}v{side}h-{side}z"));
         let data = paths.collect::<String>();
         of_text(

@@ -15,7 +15,7 @@ const UNITS: [(&str, f64); 5] =
     [("mm", 1.0), ("cm", 10.0), ("m", 1000.0), ("in", 25.4), ("inch", 25.4)];
 
 /// Where x and y stand in a line, and the length of their unit (mm).
-struct Columns {
+struct CoordinateColumns {
     places: [usize; 2],
     unit: f64,
 }
@@ -80,7 +80,7 @@ fn points(text: &str) -> Result<Vec<[f64; 2]>, (u64, String)> {
     let named = named.map_err(|what| (above[above.len() - 1].line, what))?;
     let columns = match named {
         Some(columns) => columns,
-        None => Columns {
+        None => CoordinateColumns {
             places: unnamed(below, &table).map_err(|what| (first.line, what))?,
             unit: 1.0,
         },
@@ -122,7 +122,7 @@ fn points(text: &str) -> Result<Vec<[f64; 2]>, (u64, String)> {
 }
 
 /// The columns that a head names x and y.
-fn named(head: &[String]) -> Result<Columns, String> {
+fn named(head: &[String]) -> Result<CoordinateColumns, String> {
     let parts = |cell: &String| -> Vec<String> {
         let letters = cell.to_lowercase();
         let words = letters.split(|c: char| !c.is_alphanumeric());
@@ -144,7 +144,7 @@ fn named(head: &[String]) -> Result<Columns, String> {
         }
     };
     match (unit(x)?, unit(y)?) {
-        (of_x, of_y) if of_x == of_y => Ok(Columns { places: [x, y], unit: of_x }),
+        (of_x, of_y) if of_x == of_y => Ok(CoordinateColumns { places: [x, y], unit: of_x }),
         _ => Err("x and y have different units".into()),
     }
 }

@@ -45,7 +45,7 @@ impl RunCommand {
         };
         let (campaign, solver) = (self.campaign.load()?, FeSolver::find()?);
         let (stop, bar) = (interrupt::stop_flag()?, RayProgress::new(campaign.size()));
-        let show = &mut |now: &fe_driver::Progress| bar.show(now);
+        let show = &mut |now: &fe_driver::CampaignProgress| bar.show(now);
         let ended = fe_driver::run(&campaign, &folder, &solver, &options, stop, show)?;
         bar.0.finish();
         let tally = ended.tally;
@@ -65,7 +65,7 @@ impl RayProgress {
         Self(Progress::new(rays, "rays"))
     }
 
-    pub(crate) fn show(&self, now: &fe_driver::Progress) {
+    pub(crate) fn show(&self, now: &fe_driver::CampaignProgress) {
         let tally = &now.tally;
         let message = format!("{} samples, {} failed", tally.rows, tally.failed);
         self.0.set_total(tally.closed() + tally.to_run());

@@ -14,7 +14,7 @@ use verification::{SCALE, spread_table};
 /// mesh, and writes them to compare.md. Example: kirigami dataset
 /// compare data/polypropylene-3mm/hinges.parquet
 #[derive(Args)]
-pub(crate) struct CompareCommand {
+pub(crate) struct CompareRaysCommand {
     /// Database to evaluate (Parquet with its manifest)
     #[arg(value_name = "DATABASE")]
     database: PathBuf,
@@ -26,7 +26,7 @@ pub(crate) struct CompareCommand {
     out: PathBuf,
 }
 
-impl CompareCommand {
+impl CompareRaysCommand {
     pub(super) fn run(&self) -> Result<()> {
         let database = Database::read(&self.database)?;
         let reference = (self.reference.as_ref()).map(|file| Database::read(file));

@@ -7,7 +7,7 @@ use hinge::SheetMaterial;
 use std::path::{Path, PathBuf};
 use support::table::{Cell, Table};
 use tensile::{
-    Cause, FitOptions, FractureSource, MaterialFit, Origin, Quantity, RecordOptions, Softening,
+    Exclusion, FitOptions, FractureSource, MaterialFit, Origin, Quantity, RecordOptions, Softening,
     Specimen, SpecimenOptions, Statistic, material_file,
 };
 
@@ -253,9 +253,9 @@ fn specimen_table(specimens: &[Specimen]) -> Table {
         table.row([
             Cell::text(file_name(it)),
             Cell::text(it.rows),
-            Cell::text(it.dropped_for(Cause::Toe)),
-            Cell::text(it.dropped_for(Cause::Unloading)),
-            Cell::text(it.dropped_for(Cause::Broken)),
+            Cell::text(it.dropped_for(Exclusion::Toe)),
+            Cell::text(it.dropped_for(Exclusion::Unloading)),
+            Cell::text(it.dropped_for(Exclusion::Broken)),
             Cell::text(it.averaged),
             Cell::fixed(100.0 * it.toe, 3),
             Cell::text(format!("{from:.3} to {to:.3}")),

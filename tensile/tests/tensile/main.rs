@@ -10,7 +10,7 @@ use hinge::SheetMaterial;
 use std::path::PathBuf;
 use synthetic::{FILM, HEADER, LINEAR, Law, Noise, RAMBERG_OSGOOD, VOCE, at, csv, write};
 use tensile::{
-    Cause, FitOptions, FractureSource, MaterialFit, Origin, Quantity, RecordOptions,
+    Exclusion, FitOptions, FractureSource, MaterialFit, Origin, Quantity, RecordOptions,
     SpecimenOptions, material_file,
 };
 
@@ -143,7 +143,7 @@ fn toe_and_slack_are_compensated() {
                 "{}: {case}: {found}",
                 law.name
             );
-            assert!(fit.specimens[0].dropped_for(Cause::Toe) > 0);
+            assert!(fit.specimens[0].dropped_for(Exclusion::Toe) > 0);
         }
     }
 }
@@ -169,7 +169,7 @@ fn unloading_loops_are_removed() {
         }
         let fit = fit_text(&csv(HEADER, &rows), &OPTIONS);
         agrees(&fit, &law, "loops", [EXACT[0], EXACT[1], 0.01]);
-        let dropped = fit.specimens[0].dropped_for(Cause::Unloading);
+        let dropped = fit.specimens[0].dropped_for(Exclusion::Unloading);
         assert!((230..=320).contains(&dropped), "{}: {dropped}", law.name);
     }
 }
@@ -322,7 +322,7 @@ fn a_metal_that_necks_is_measured_to_its_maximum_force() {
     let text = csv(HEADER, &rows);
     let fit = fit_text(&text, &OPTIONS);
     assert_eq!(fit.fracture_source, FractureSource::MaximumForce);
-    assert_eq!(fit.specimens[0].dropped_for(Cause::Broken), 2);
+    assert_eq!(fit.specimens[0].dropped_for(Exclusion::Broken), 2);
     // The maximum is flat: 0.1 % of the force is 0.01 in strain.
     let last = fit.table.last().unwrap();
     assert!((last.strain - necking).abs() < 0.01, "{last:?} {necking}");

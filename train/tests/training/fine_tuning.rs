@@ -1,7 +1,7 @@
 //! Trainings that start with the weights of another material.
 
 use crate::closed_form::{config, database, finished, rows, trained};
-use dataset::{Database, Part, Row};
+use dataset::{Database, Row, Subset};
 use hinge::HingeSample;
 use surrogate::Surrogate;
 use train::{Parity, Start, Training, TrainingConfig, train};
@@ -47,7 +47,7 @@ fn fine_tuning_starts_with_the_function_of_the_given_weights() {
     assert_eq!(hash, Some(pretrained.hash()));
 
     let predicted = |surrogate: &Surrogate| {
-        let parity = Parity::new(surrogate, &database.part(Part::Training));
+        let parity = Parity::new(surrogate, &database.part(Subset::Training));
         [0, 1, 2, 3, 4, 5].map(|quantity| parity.points(quantity).collect::<Vec<_>>())
     };
     let (expected, found) = (predicted(&scaled), predicted(&start));
@@ -88,7 +88,7 @@ fn weights_of_the_same_law_keep_their_domain_and_sizes() {
     };
     let whole = of_law(rows(40), "film");
     let pretrained = train(&whole, &config(1), &mut |_| {}).unwrap().surrogate;
-    let few: Vec<Row> = whole.part(Part::Training).into_iter().take(80).collect();
+    let few: Vec<Row> = whole.part(Subset::Training).into_iter().take(80).collect();
     let start = |rows: &Database| {
         let other = TrainingConfig { embedding: vec![4], ..config(1) };
         let config = other.with_sizes_of(&pretrained);

@@ -6,7 +6,7 @@ mod fine_tuning;
 mod resuming;
 
 use crate::closed_form::{config, database, energies, rows, sample, trained};
-use dataset::{Part, Row};
+use dataset::{Row, Subset};
 use hinge::{HingeDeformation, HingeDesign, HingeSample};
 use std::f64::consts::FRAC_PI_2;
 use surrogate::{Order, Surrogate};
@@ -75,7 +75,7 @@ fn a_damage_head_without_a_known_error_is_that_of_the_last_epoch() {
         let [energy, d, d_peak] = epoch.validation_errors;
         assert!(energy > 0.0 && d.is_nan() && d_peak.is_nan(), "{epoch:?}");
     }
-    let test = database.part(Part::Test);
+    let test = database.part(Subset::Test);
     let predicted = |surrogate: &Surrogate| {
         let parity = Parity::new(surrogate, &test);
         [4, 5].map(|quantity| parity.points(quantity).collect::<Vec<_>>())

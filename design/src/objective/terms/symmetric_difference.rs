@@ -8,7 +8,7 @@ use crate::{
         symmetric_difference::symmetric_difference,
     },
     objective::{
-        shape::Shape,
+        shape::ShapeDistance,
         term::{Deployed, Term, TermGradient},
     },
 };
@@ -16,14 +16,14 @@ use crate::{
 /// The symmetric difference of target and deployed outline.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SymmetricDifference {
-    shape: Shape,
+    shape: ShapeDistance,
     /// The target, counter-clockwise (mm).
     target: Vec<[f64; 2]>,
 }
 
 impl SymmetricDifference {
     /// The term for the outline and the target of `shape`.
-    pub fn new(shape: Shape) -> Self {
+    pub fn new(shape: ShapeDistance) -> Self {
         let target = counter_clockwise(&shape.target);
         Self { shape, target }
     }

@@ -13,7 +13,7 @@ use design::{
     equilibrium::load_step::LoadStep,
     geometry::polygon::size,
     sheet::{
-        hinge_window::Window,
+        hinge_window::HingeWindow,
         validity::{OVERLAP, overlap},
     },
 };
@@ -145,7 +145,7 @@ pub(super) const RULES: [Rule; 9] = [
         ],
         |of| {
             let sheet = &of.deployment.sheet;
-            let windows = Window::of_sheet(sheet);
+            let windows = HingeWindow::of_sheet(sheet);
             let overlapping = |h: &usize| {
                 let mut others = windows.iter().enumerate().filter(|(other, _)| other != h);
                 others.any(|(_, other)| windows[*h].overlaps(other))
@@ -168,7 +168,7 @@ pub(super) const RULES: [Rule; 9] = [
         ],
         |of| {
             let sheet = &of.deployment.sheet;
-            let windows = Window::of_sheet(sheet).into_iter().zip(&sheet.hinges);
+            let windows = HingeWindow::of_sheet(sheet).into_iter().zip(&sheet.hinges);
             let leaving = windows.enumerate().filter(|(_, (window, hinge))| {
                 let [a, b] = hinge.panels().map(|panel| &sheet.panels[panel]);
                 !window.within(a, b)
