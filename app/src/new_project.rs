@@ -98,12 +98,11 @@ impl NewProject {
         };
         sheet.validate()?;
         let fitting = self.weights_of(&measured)?;
-        let named = self.weights.as_ref().and(fitting.first());
-        let named = named.map(|weights| weights.regime);
+        let named = self.weights.as_ref().and(fitting.first()).map(|weights| weights.regime);
         let cut_from =
             self.stock.map(|stock| CutFrom { stock, margin: self.margin.unwrap_or(0.0) });
         let is_even = (self.target.is_some() || self.any_width) && !fitting.is_empty();
-        let mut first = FirstScene::new(self.size, cut_from, sheet.thickness, named, is_even)?;
+        let first = FirstScene::new(self.size, cut_from, sheet.thickness, named, is_even)?;
         let regime = first.regime;
         let check = MaterialCheck::new(&sheet, &Intended::usual(sheet.thickness, regime));
         let excluded: Vec<String> = check.errors().map(|it| it.message.clone()).collect();
@@ -115,19 +114,10 @@ impl NewProject {
         );
         let weights = fitting.iter().find(|weights| weights.regime == regime);
         let trained = weights.is_some();
-        first.any_width = self.any_width || self.service.is_some();
-        if let Some(weights) = weights {
-            first.opening = weights.opening;
-            first.damage = Some(weights.damage);
-        }
-        let own = self.folder.join("weights.safetensors");
-        let file = weights.map_or(&own, |weights| &weights.file);
         let drawing = self.target.as_ref().map(|file| OwnDrawing::read(file, self.threshold));
         let drawing = drawing.transpose()?;
-        let mut scene = first.text(&self.folder, file, drawing.as_ref())?;
-        if let Some(weights) = weights {
-            scene = weights.known_part(&scene, sheet.thickness / measured.thickness)?;
-        }
+        let scale = sheet.thickness / measured.thickness;
+        let mut scene = self.first_scene(first, weights, drawing.as_ref(), scale)?;
         let name = self.folder.file_name().unwrap_or_default().to_string_lossy();
         // The hinges of a plate are solved in its thickness: in the thickness of a film they would
         // be too narrow.
@@ -160,6 +150,24 @@ impl NewProject {
         // An interrupted command leaves no scene that could be designed.
         write(SCENE_FILE, &scene)?;
         Ok(text)
+    }
+
+    /// The text of the first scene, with what weights know of a sheet that is `scale` times as thick
+    /// as theirs.
+    fn first_scene(
+        &self,
+        mut first: FirstScene,
+        weights: Option<&Weights>,
+        drawing: Option<&OwnDrawing>,
+        scale: f64,
+    ) -> Result<String> {
+        first.any_width = self.any_width || self.service.is_some();
+        let Some(weights) = weights else {
+            return first.text(&self.folder, &self.folder.join("weights.safetensors"), drawing);
+        };
+        first.opening = weights.opening;
+        first.damage = Some(weights.damage);
+        weights.known_part(&first.text(&self.folder, &weights.file, drawing)?, scale)
     }
 
     /// The text of the scene for the service and the drawing, what is expected of its sheet, and
@@ -202,26 +210,24 @@ impl NewProject {
                 input_file::require(weights, "--weights")?;
                 vec![weights.clone()]
             }
-            None => {
-                let shipped = WEIGHTS.map(PathBuf::from).into_iter();
-                shipped.filter(|weights| weights.is_file()).collect()
-            }
+            None => WEIGHTS.map(PathBuf::from).into_iter().filter(|it| it.is_file()).collect(),
         };
         let mut fitting = Vec::new();
         for file in candidates {
             let card = Card::of(&file)?;
             if card.material_hash == Some(material.law_hash()) {
                 let surrogate = Surrogate::load(&file)?;
-                let regime = material.regime(card.domain.w_lig[1]);
-                let w_lig = 0.5 * surrogate.domain().w_lig.iter().sum::<f64>();
-                let angles = [surrogate.domain().alpha[0], FRAC_PI_2];
+                let domain = surrogate.domain();
+                let regime = material.regime(domain.w_lig[1]);
+                let w_lig = 0.5 * domain.w_lig.iter().sum::<f64>();
+                let angles = [domain.alpha[0], FRAC_PI_2];
                 let opening = safe_opening(&surrogate, w_lig, &angles, first_scene::OPENING);
                 fitting.push(Weights {
                     file,
                     regime,
                     opening,
                     damage: damage_of_turn(&surrogate, w_lig, opening),
-                    widths: surrogate.domain().w_lig,
+                    widths: domain.w_lig,
                     holes: surrogate.holes(),
                 });
             } else if self.weights.is_some() {

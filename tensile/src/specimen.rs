@@ -117,30 +117,23 @@ impl Specimen {
 )
             })?;
         let curve = Compensated::new(&record, &nominal, noise, options).map_err(file)?;
-        let Compensated { young, elastic, noise, rows: smooth, .. } = &curve;
-        let (young, noise, end) = (*young, *noise, smooth.len() - 1);
-        let offset_yield = offset_yield(smooth, young, *elastic).ok_or_else(|| {
+        let Compensated { young, elastic, noise, compliance, rows: ref smooth, .. } = curve;
+        let end = smooth.len() - 1;
+        let offset_yield = offset_yield(smooth, young, elastic).ok_or_else(|| {
             file(format!(
                 "ends at {:.3} MPa before a plastic strain of 0.2 %: it contains no yield and no hardening; is it the \
                  curve up to the break?",
                 smooth[end][1]
             ))
         })?;
-        within(
-            &record.read_as,
-            "elastic strain at yield",
-            offset_yield / young,
-            YIELD_STRAIN,
-            [["", "1"], ["", "%"]],
-        )
-        .map_err(file)?;
-        let (mut draw, mut last, mut ended) = (None, end, SpecimenEnd::Uniform);
-        if !record.is_local() {
-            draw = landmarks::draw(smooth, *elastic, noise[1], options.draw_ratio).map_err(file)?;
-            let drawn = |draw: &Draw| smooth.partition_point(|row| 1.0 + row[0] < draw.draw_ratio);
-            let from = draw.as_ref().map_or(*elastic, drawn);
-            (last, ended) = uniform_end(smooth, from, noise[1]);
-        }
+        let strain = offset_yield / young;
+        let units = [["", "1"], ["", "%"]];
+        within(&record.read_as, "elastic strain at yield", strain, YIELD_STRAIN, units)
+            .map_err(file)?;
+        let (draw, last, ended) = match record.is_local() {
+            true => (None, end, SpecimenEnd::Uniform),
+            false => curve.necking(options.draw_ratio).map_err(file)?,
+        };
         if let (Some(ratio), None) = (options.draw_ratio, draw) {
             record.unused.push(format!("--draw-ratio {ratio}, as the record shows no draw"));
         }
@@ -154,12 +147,7 @@ impl Specimen {
             ))
         })?;
         let rows = record.rows.len();
-        let unmarked = record.rows.iter_mut().filter(|row| row.cause.is_none());
-        let toe = unmarked.take_while(|row| curve.is_toe(row.strain));
-        toe.for_each(|row| row.cause = Some(Exclusion::Toe));
-        let mut dropped = record.rows;
-        dropped.retain(|row| row.cause.is_some());
-        dropped.iter_mut().for_each(|row| row.strain = curve.corrected(row.strain, row.stress));
+        let dropped = curve.dropped(record.rows);
         let used = nominal.iter().skip_while(|row| curve.is_toe(row[0]));
         Ok(Self {
             read_as: record.read_as,
@@ -173,7 +161,7 @@ impl Specimen {
             nominal: used.map(|&[e, s]| [curve.corrected(e, s), s]).collect(),
             toe: curve.linear.toe,
             linear: curve.linear,
-            compliance: curve.compliance,
+            compliance,
             end: ended,
             path,
             rows,
@@ -219,9 +207,9 @@ impl Compensated {
         let mut linear = linear_part(&mut rows, record, noise).ok_or(
             "has no linear part: the stress does not rise with the strain; are the columns swapped?",
         )?;
-        let read_as = &record.read_as;
+        let (read_as, known) = (&record.read_as, linear.is_known());
         within(read_as, "modulus (MPa)", linear.young, YOUNG, [["GPa", "%"], ["Pa", "1"]])?;
-        let young = options.young.or(linear.is_known().then_some(linear.young)).ok_or_else(|| {
+        let young = options.young.or(known.then_some(linear.young)).ok_or_else(|| {
             format!(
                 "has a modulus of {:.0} ± {:.0} MPa (standard error) from {} rows, whose 95 % interval reaches zero: state it with \
                  --young, or export the record without thinning",
@@ -229,16 +217,16 @@ impl Compensated {
             )
         })?;
         let ratio = linear.young / young;
-        if linear.is_known() {
+        if known {
             within(read_as, "initial slope over --young", ratio, SLOPE, [["UNIT"; 2]; 2])?;
         }
         let extensometer = ratio >= EXTENSOMETER && read_as[1].quantity != Extension;
-        let compliance = match extensometer || !linear.is_known() {
+        let compliance = match extensometer || !known {
             true => 0.0,
             false => 1.0 / linear.young - 1.0 / young,
         };
         rows.iter_mut().for_each(|row| row[0] -= row[1] * compliance);
-        if !linear.is_known() {
+        if !known {
             // The line of the given modulus through the first row of the part.
             let first = rows.iter().find(|row| row[0] >= linear.strain[0]).unwrap_or(&rows[0]);
             let zero = first[0] - first[1] / young;
@@ -249,6 +237,27 @@ impl Compensated {
         let end = linear.strain[1] * (1.0 - linear.young * compliance);
         let elastic = rows.iter().position(|row| row[0] >= end).unwrap_or(0);
         Ok(Self { rows, noise, linear, young, compliance, elastic })
+    }
+
+    /// The draw, if the specimen drew, and the last row of its uniform deformation with how it
+    /// ended.
+    fn necking(&self, ratio: Option<f64>) -> Result<(Option<Draw>, usize, SpecimenEnd), String> {
+        let (rows, noise) = (&self.rows, self.noise[1]);
+        let draw = landmarks::draw(rows, self.elastic, noise, ratio)?;
+        let drawn = |draw: Draw| rows.partition_point(|row| 1.0 + row[0] < draw.draw_ratio);
+        let (last, end) = uniform_end(rows, draw.map_or(self.elastic, drawn), noise);
+        Ok((draw, last, end))
+    }
+
+    /// The rows that are not used, among them the toe, with corrected strains.
+    fn dropped(&self, mut rows: Vec<RecordRow>) -> Vec<RecordRow> {
+        let unmarked = rows.iter_mut().filter(|row| row.cause.is_none());
+        for row in unmarked.take_while(|row| self.is_toe(row.strain)) {
+            row.cause = Some(Exclusion::Toe);
+        }
+        rows.retain(|row| row.cause.is_some());
+        rows.iter_mut().for_each(|row| row.strain = self.corrected(row.strain, row.stress));
+        rows
     }
 
     /// A measured strain without toe and compliance.

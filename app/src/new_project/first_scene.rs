@@ -24,7 +24,7 @@ use analysis::fit::scene::SIDE;
 use anyhow::{Context, Result};
 use hinge::{MIN_W_LIG, Regime};
 use scene::{CuttingConfig, Paper, rounded};
-use std::path::Path;
+use std::{array::from_fn, path::Path};
 use support::relative_path;
 use toml_edit::{Array, DocumentMut, Item, Table, value};
 
@@ -135,15 +135,6 @@ impl FirstScene {
         weights: &Path,
         drawing: Option<&OwnDrawing>,
     ) -> Result<String> {
-        // A folder elsewhere may be moved without the files of the program.
-        let is_here = std::path::absolute(folder)?.starts_with(std::env::current_dir()?);
-        let named = |file: &Path| -> Result<String> {
-            let named = match is_here || file.starts_with(folder) {
-                true => relative_path::from_folder(folder, file)?,
-                false => std::path::absolute(file)?,
-            };
-            Ok(named.display().to_string())
-        };
         let template = Template::of(self.regime);
         let factor = self.thickness / template.thickness;
         let [columns, rows] = self.panels;
@@ -170,7 +161,7 @@ impl FirstScene {
             map(&mut scene["ligament"][key], |width| rounded(factor * width).max(MIN_W_LIG));
         }
         scale(&mut scene["process"]["r_win"], factor);
-        name_weights(&mut scene["surrogate"], weights, named)?;
+        name_weights(&mut scene["surrogate"], weights, folder)?;
         // Clips as wide, relative to the edge that they hold, as the clips of the template.
         let edge = self.size[0] / self.panels[0] as f64;
         for (list, panel, part) in [("supports", held, HELD), ("loads", pulled, PULLED)] {
@@ -178,17 +169,7 @@ impl FirstScene {
             set(&mut attached["panel"], whole(panel));
             set(&mut attached["clip"], rounded(part * edge));
         }
-        let OpenedSheet { centre, size, rotation_deg, moved, beyond_clip } = self.target(held);
-        // A film is pulled along its edge; a plate hangs in the line of its clips, so that the
-        // upper one carries no moment.
-        let pull = match self.regime {
-            Regime::Film => [0.0, -1.0],
-            Regime::Plate => {
-                let length = beyond_clip[0].hypot(beyond_clip[1]);
-                beyond_clip.map(|x| rounded(x / length))
-            }
-        };
-        let stroke = moved[0] * pull[0] + moved[1] * pull[1];
+        let OpenedSheet { centre, size, rotation_deg, pull, stroke } = self.target(held);
         set(&mut scene["drive"]["stroke"], rounded(stroke));
         set(&mut scene["loads"][0]["force"], Array::from_iter(pull));
         if self.regime == Regime::Plate {
@@ -215,21 +196,20 @@ impl FirstScene {
         Ok(scene.to_string())
     }
 
-    /// The rectangle of the sheet opened by its opening with the panel `held` fixed, and the motion
-    /// of the middle of the lower edge of its column.
+    /// The rectangle of the sheet opened by its opening with the panel `held` fixed, and the pull at
+    /// the middle of the lower edge of its column.
     fn target(&self, held: [usize; 2]) -> OpenedSheet {
-        let panel: [f64; 2] = std::array::from_fn(|i| self.size[i] / self.panels[i] as f64);
+        let panel: [f64; 2] = from_fn(|i| self.size[i] / self.panels[i] as f64);
         let (sin, cos) = (0.5 * self.opening).sin_cos();
         let [a, b] = panel;
         let pitch = [a * cos + b * sin, b * cos + a * sin];
         // Even panels rotate by -theta/2, odd ones by theta/2; the held panel stays.
         let sign = if (held[0] + held[1]).is_multiple_of(2) { 1.0 } else { -1.0 };
         let rotation = sign * 0.5 * self.opening;
-        let fixed: [f64; 2] = std::array::from_fn(|i| (held[i] as f64 + 0.5) * panel[i]);
+        let fixed: [f64; 2] = from_fn(|i| (held[i] as f64 + 0.5) * panel[i]);
         // From the held panel to the middle of the sheet, before the rotation.
-        let arm: [f64; 2] = std::array::from_fn(|i| {
-            (0.5 * (self.panels[i] as f64 - 1.0) - held[i] as f64) * pitch[i]
-        });
+        let arm: [f64; 2] =
+            from_fn(|i| (0.5 * (self.panels[i] as f64 - 1.0) - held[i] as f64) * pitch[i]);
         let (sin, cos) = rotation.sin_cos();
         let steps = self.panels[1] - 1;
         // An odd number of panels away, the pulled panel turns by the opening, and the middle of
@@ -240,26 +220,40 @@ impl FirstScene {
         // From the middle of the held panel to the pulled point, in the opened and in the flat
         // sheet.
         let opened = [sin * down + turned_sin * half, -cos * down - turned_cos * half];
-        let flat = [0.0, -(steps as f64) * panel[1] - half];
+        let flat = -(steps as f64) * panel[1] - half;
+        // A film is pulled along its edge; a plate hangs in the line of its clips, so that the
+        // upper one carries no moment.
+        let pull = match self.regime {
+            Regime::Film => [0.0, -1.0],
+            Regime::Plate => {
+                let [x, y] = [opened[0], opened[1] - half];
+                [x, y].map(|part| rounded(part / x.hypot(y)))
+            }
+        };
         OpenedSheet {
             centre: [
                 fixed[0] + cos * arm[0] - sin * arm[1],
                 fixed[1] + sin * arm[0] + cos * arm[1],
             ],
-            size: std::array::from_fn(|i| self.panels[i] as f64 * pitch[i]),
+            size: from_fn(|i| self.panels[i] as f64 * pitch[i]),
             rotation_deg: rotation.to_degrees(),
-            moved: [0, 1].map(|i| opened[i] - flat[i]),
-            beyond_clip: [opened[0], opened[1] - half],
+            pull,
+            stroke: opened[0] * pull[0] + (opened[1] - flat) * pull[1],
         }
     }
 }
 
-/// Names weights, and what stands next to them, in the table `[surrogate]`.
-fn name_weights(
-    surrogate: &mut Item,
-    weights: &Path,
-    named: impl Fn(&Path) -> Result<String>,
-) -> Result<()> {
+/// Names weights, and what stands next to them, in the table `[surrogate]` of a scene in `folder`.
+fn name_weights(surrogate: &mut Item, weights: &Path, folder: &Path) -> Result<()> {
+    // A folder elsewhere may be moved without the files of the program.
+    let is_here = std::path::absolute(folder)?.starts_with(std::env::current_dir()?);
+    let named = |file: &Path| -> Result<String> {
+        let named = match is_here || file.starts_with(folder) {
+            true => relative_path::from_folder(folder, file)?,
+            false => std::path::absolute(file)?,
+        };
+        Ok(named.display().to_string())
+    };
     set(&mut surrogate["weights"], named(weights)?);
     let Some(surrogate) = surrogate.as_table_mut() else { return Ok(()) };
     surrogate.remove("ensemble");
@@ -310,10 +304,10 @@ struct OpenedSheet {
     centre: [f64; 2],
     size: [f64; 2],
     rotation_deg: f64,
-    /// Displacement of the pulled point (mm).
-    moved: [f64; 2],
-    /// From the clip at the top to the pulled point of the opened sheet (mm).
-    beyond_clip: [f64; 2],
+    /// Direction in which it is pulled open.
+    pull: [f64; 2],
+    /// Displacement of the pulled point in this direction (mm).
+    stroke: f64,
 }
 
 fn whole(panel: [usize; 2]) -> Array {

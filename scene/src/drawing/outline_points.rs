@@ -6,7 +6,7 @@
 use crate::drawing::{contour::Contour, drawn_outline::listed, joined_lines::joined};
 use std::path::Path;
 use support::{
-    Fault, at, text_file,
+    Fault, Point, at, text_file,
     text_table::{TextRow, TextTable},
 };
 
@@ -21,15 +21,15 @@ struct CoordinateColumns {
 }
 
 /// The points in a file (mm), in its order.
-pub(crate) fn read(path: &Path) -> Result<Vec<[f64; 2]>, Fault> {
+pub(crate) fn read(path: &Path) -> Result<Vec<Point>, Fault> {
     let file = path.display();
-    let text = text_file::read(path);
-    let text = text.map_err(at(format!("cannot read the target outline {file}")))?;
+    let text =
+        text_file::read(path).map_err(at(format!("cannot read the target outline {file}")))?;
     points(&text).map_err(|(line, what)| format!("{file}:{line}: {what}").into())
 }
 
 /// The points of a text (mm); an error has the number of its line.
-fn points(text: &str) -> Result<Vec<[f64; 2]>, (u64, String)> {
+fn points(text: &str) -> Result<Vec<Point>, (u64, String)> {
     let table = TextTable::parse(text);
     let number = |cell: &String| table.style.number(cell);
     let is_filled = |row: &&TextRow| row.cells.iter().any(|cell| !cell.is_empty());
@@ -71,46 +71,38 @@ fn points(text: &str) -> Result<Vec<[f64; 2]>, (u64, String)> {
     let Some(first) = below.first() else {
         return Ok(Vec::new());
     };
-    // A title such as `NACA 2412` names no columns.
-    let head = above.last().filter(|head| {
-        head.cells.len() == first.cells.len()
-            && head.cells.iter().all(|cell| number(cell).is_none())
-    });
-    let named = head.map(|head| named(&head.cells)).transpose();
-    let named = named.map_err(|what| (above[above.len() - 1].line, what))?;
-    let columns = match named {
-        Some(columns) => columns,
-        None => CoordinateColumns {
-            places: unnamed(below, &table).map_err(|what| (first.line, what))?,
-            unit: 1.0,
-        },
-    };
+    let columns = columns(above.last(), below, &table)?;
     let point = |row: &&TextRow| {
         let coordinate = |place: usize| Some(columns.unit * number(row.cells.get(place)?)?);
         let [x, y] = columns.places.map(coordinate);
         let text = row.cells.join("  ");
         let written = text.escape_debug();
         let alike = row.cells.len() == first.cells.len();
-        (x.zip(y).filter(|_| alike).map(<[f64; 2]>::from)).ok_or_else(|| {
+        (x.zip(y).filter(|_| alike).map(Point::from)).ok_or_else(|| {
             (row.line, format!("`{written}` is no point: write x and y in mm, as in `12.5, 40`"))
         })
     };
     let points = below.iter().map(point).collect::<Result<Vec<_>, _>>()?;
     let starts: Vec<usize> = (0..points.len()).filter(|i| *i == 0 || begins(*i)).collect();
-    let ends = starts[1..].iter().copied().chain([points.len()]);
-    let blocks: Vec<_> = std::iter::zip(starts.iter().copied(), ends).collect();
+    joined_blocks(points, &starts).map_err(|(start, what)| (below[start].line, what))
+}
+
+/// The points of the outline whose blocks begin at `starts`; an error has the start of the block
+/// that does not belong to it.
+fn joined_blocks(mut points: Vec<Point>, starts: &[usize]) -> Result<Vec<Point>, (usize, String)> {
+    let mut blocks: Vec<_> = starts.iter().rev().map(|start| points.split_off(*start)).collect();
+    blocks.reverse();
     // Between single points and pairs blank lines have no meaning.
-    if blocks.len() == 1 || blocks.iter().all(|(from, to)| to - from < 3) {
-        return Ok(points);
+    if blocks.len() == 1 || blocks.iter().all(|block| block.len() < 3) {
+        return Ok(blocks.concat());
     }
-    if let Some((from, _)) = blocks.iter().find(|(from, to)| to - from == 1) {
-        return Err((below[*from].line, "a point stands alone between blank lines".into()));
+    if let Some(alone) = blocks.iter().position(|block| block.len() == 1) {
+        return Err((starts[alone], "a point stands alone between blank lines".into()));
     }
-    let contour = |(from, to)| Contour { points: points[from..to].to_vec(), ..Contour::default() };
-    let blocks = blocks.into_iter().map(contour).collect();
-    let mut outlines = joined(blocks);
-    if let [outline] = &mut outlines[..] {
-        return Ok(std::mem::take(&mut outline.points));
+    let contour = |points| Contour { points, ..Contour::default() };
+    let mut outlines = joined(blocks.into_iter().map(contour).collect());
+    if outlines.len() == 1 {
+        return Ok(outlines.remove(0).points);
     }
     outlines.iter_mut().for_each(|outline| outline.closed = true);
     let what = format!(
@@ -118,7 +110,22 @@ fn points(text: &str) -> Result<Vec<[f64; 2]>, (u64, String)> {
         outlines.len(),
         listed(outlines.iter().enumerate())
     );
-    Err((below[starts[1]].line, what))
+    Err((starts[1], what))
+}
+
+/// The columns of rows, from the line above them if it names columns; an error has its line.
+fn columns(
+    above: Option<&&TextRow>,
+    rows: &[&TextRow],
+    table: &TextTable,
+) -> Result<CoordinateColumns, (u64, String)> {
+    // A title such as `NACA 2412` names no columns.
+    let head = above.filter(|head| {
+        head.cells.len() == rows[0].cells.len()
+            && head.cells.iter().all(|cell| table.style.number(cell).is_none())
+    });
+    let columns = head.map_or_else(|| unnamed(rows, table), |head| named(&head.cells));
+    columns.map_err(|what| (head.unwrap_or(&rows[0]).line, what))
 }
 
 /// The columns that a head names x and y.
@@ -149,21 +156,24 @@ fn named(head: &[String]) -> Result<CoordinateColumns, String> {
     }
 }
 
-/// The places of x and y in lines without a head.
-fn unnamed(rows: &[&TextRow], table: &TextTable) -> Result<[usize; 2], String> {
+/// The columns of lines without a head.
+fn unnamed(rows: &[&TextRow], table: &TextTable) -> Result<CoordinateColumns, String> {
     let column = |place: usize| -> Vec<f64> {
         let cells = rows.iter().filter_map(|row| row.cells.get(place));
         cells.filter_map(|cell| table.style.number(cell)).collect()
     };
-    match rows[0].cells.len() {
-        0..=2 => Ok([0, 1]),
-        3 if column(0).windows(2).all(|pair| pair[1] == pair[0] + 1.0) => Ok([1, 2]),
-        3 if column(2).windows(2).all(|pair| pair[1] == pair[0]) => Ok([0, 1]),
-        found => Err(format!(
-            "there are {found} numbers in a line, and no names of the columns: write x and y alone, or a first line with `x` and `y`; if \
-             commas are decimal signs, write semicolons between the numbers"
-        )),
-    }
+    let places = match rows[0].cells.len() {
+        0..=2 => [0, 1],
+        3 if column(0).windows(2).all(|pair| pair[1] == pair[0] + 1.0) => [1, 2],
+        3 if column(2).windows(2).all(|pair| pair[1] == pair[0]) => [0, 1],
+        found => {
+            return Err(format!(
+                "there are {found} numbers in a line, and no names of the columns: write x and y alone, or a first line with `x` and `y`; if \
+                 commas are decimal signs, write semicolons between the numbers"
+            ));
+        }
+    };
+    Ok(CoordinateColumns { places, unit: 1.0 })
 }
 
 #[cfg(test)]
