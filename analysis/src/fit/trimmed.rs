@@ -10,7 +10,7 @@ use super::even_pattern::{
 };
 use design::geometry::plane::{complex, point};
 use design::geometry::polygon::{distance, distance_to_outline, distance_to_polygon};
-use design::geometry::region::{Ring, Corners, Region};
+use design::geometry::region::{Corners, Region, Ring};
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_2};
 
@@ -186,8 +186,9 @@ impl<'a> TrimmedEdge<'a> {
     fn new(drawing: &Region, loops: &BTreeSet<GridIndex>, limits: &'a Limits) -> Self {
         let squares = squares(loops);
         let hinges: BTreeSet<HingedSquares> = loops.iter().flat_map(|at| pairs(*at)).collect();
-        let is_hinged =
-            |cell: GridIndex, other: GridIndex| hinges.contains(&[cell.min(other), cell.max(other)]);
+        let is_hinged = |cell: GridIndex, other: GridIndex| {
+            hinges.contains(&[cell.min(other), cell.max(other)])
+        };
         let seen = |cell: &GridIndex| {
             let motion = limits.opening.motion(*cell);
             let at = moved(motion, centre(*cell));
