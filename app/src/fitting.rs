@@ -35,7 +35,7 @@ pub fn fit_to_target(
 
 /// What a person may expect of the sheet of a material of some thickness (mm).
 pub fn expected(fit: &FittedScene, thickness: f64) -> String {
-    let FittedScene { panels, side, opening, seen, lost, kept_by, held, .. } = fit;
+    let FittedScene { panels, side, smallest, opening, seen, lost, kept_by, held, .. } = fit;
     let [opening, seen] = [opening.to_degrees(), 100.0 * seen];
     let mut lines = vec![format!(
         "{panels} panels of {side:.0} mm, opened by {opening:.0} deg, show {seen:.1} % of the target (common area over the area of both, gaps \
@@ -48,6 +48,9 @@ pub fn expected(fit: &FittedScene, thickness: f64) -> String {
         let why = if width < two { "it" } else { "what joins it to the rest" };
         format!("not shown: a part {width:.0} mm wide {place}; {why} is narrower than two panels of {side:.0} mm")
     }));
+    if !lost.is_empty() && side > smallest {
+        lines.push(format!("smaller panels show more, down to {smallest:.0} mm"));
+    }
     lines.extend(kept_by.map(|factor| {
         let thinner = (100.0 * thickness / factor).floor() / 100.0;
         let same = Regime::usual(thinner) == Regime::usual(thickness);

@@ -1,7 +1,7 @@
 //! The sheet that is open: its scene, what was before it, and its runs.
 
 use crate::project::Project;
-use analysis::fit::scene::{FittedScene, cropped, fitted, smallest_side};
+use analysis::fit::scene::{FittedScene, cropped, fitted};
 use anyhow::Result;
 use app::{cut::Verdict, fitting::expected, own_drawing::OwnDrawing};
 use design::{equilibrium::warm_start::WarmStart, optimise::outer_loop::Ended};
@@ -92,14 +92,13 @@ pub(crate) fn fitted_to(
 /// A scene with the sheet that was fitted to it, and what is said of it.
 pub(crate) fn told(scene: &Scene, fit: FittedScene) -> Result<(Scene, Value)> {
     let says = expected(&fit, scene.material.thickness);
-    let (panels, side) = (fit.panels, fit.side);
     let scene = scene.changed(fit.config)?;
     let says = json!({
         "target": scene.config.target,
         "says": says,
-        "panels": panels,
-        "side": side,
-        "smallest": smallest_side(&scene),
+        "panels": fit.panels,
+        "side": fit.side,
+        "smallest": fit.smallest,
     });
     Ok((scene, says))
 }

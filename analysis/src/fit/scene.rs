@@ -50,6 +50,8 @@ pub struct FittedScene {
     pub panels: usize,
     /// Side of a panel (mm).
     pub side: f64,
+    /// The smallest side of a panel that has room for the windows of two hinges (mm).
+    pub smallest: f64,
     /// The opening of every hinge (rad).
     pub opening: f64,
     /// Intersection over union of what one sees of the opened panels and the target.
@@ -115,6 +117,7 @@ fn fastened(scene: &Scene, sheet: &EvenSheet, side: f64) -> Result<FittedScene, 
         kept_by: None,
         panels: topology.panel_count(),
         side,
+        smallest: smallest_side(scene),
         opening: sheet.limits.opening.angle,
         seen: sheet.seen,
     })
@@ -131,7 +134,7 @@ pub fn cropped(scene: &Scene, side: f64) -> Result<(Vec<Ring>, f64), Fault> {
 }
 
 /// The smallest side of a panel that has room for the windows of two hinges (mm).
-pub fn smallest_side(scene: &Scene) -> f64 {
+fn smallest_side(scene: &Scene) -> f64 {
     SIDE * scene.config.process.r_win
 }
 
