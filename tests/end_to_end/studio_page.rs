@@ -354,10 +354,11 @@ fn picture_under_sliders(tab: &mut Tab, studio: &Studio, work: &Workplace) {
     // A click on a panel takes it out, a click on its place adds it again.
     let panels = tab.value("fit.panels").as_u64().unwrap();
     tab.click("[value=cells]");
-    tab.value("place = meanOf(boundariesDrawn[0])");
-    after(tab, |tab| tab.value("askCell(place)"));
+    tab.value("spot = meanOf(boundariesDrawn[0])");
+    let pick = |tab: &mut Tab| _ = tab.value("askCell(spot)");
+    after(tab, pick);
     assert!(tab.value("fit.panels").as_u64().unwrap() < panels);
-    after(tab, |tab| tab.value("askCell(place)"));
+    after(tab, pick);
     assert_eq!(tab.value("fit.panels").as_u64(), Some(panels));
     assert_no_error(tab);
 }

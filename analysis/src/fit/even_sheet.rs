@@ -15,7 +15,7 @@ use rayon::prelude::*;
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::{FRAC_PI_2, PI};
-use support::{Fault, ensure};
+use support::{Fault, ensure, refuse};
 
 /// Places that are tried along a pitch, and turns that are tried in a quarter turn.
 const SHIFTS: u32 = 4;
@@ -131,17 +131,19 @@ impl EvenSheet {
         if before.contains(&[i, j]) {
             loops.retain(|it| !around.contains(it));
         } else {
-            let more = |it: &GridIndex| squares(&BTreeSet::from([*it])).difference(&before).count();
-            let fewest = around.iter().map(more).min();
-            let needed = around.into_iter().filter(|it| Some(more(it)) == fewest);
-            loops.extend(needed.take(if fewest == Some(1) { 4 } else { 1 }));
+            let more = |it: &GridIndex| &squares(&BTreeSet::from([*it])) - &before;
+            let in_drawing = |cell: &GridIndex| {
+                drawing.contains(moved(limits.opening.motion(*cell), centre(*cell)))
+            };
+            let fit = around.iter().filter(|it| more(it).iter().all(in_drawing));
+            let Some(fewest) = fit.clone().map(|it| more(it).len()).min() else {
+                refuse!(
+                    "a panel there, or those that it needs next to it, are outside of the target"
+                );
+            };
+            let needed = fit.filter(|it| more(it).len() == fewest);
+            loops.extend(needed.take(if fewest == 1 { 4 } else { 1 }));
         }
-        let in_drawing =
-            |cell: &GridIndex| drawing.contains(moved(limits.opening.motion(*cell), centre(*cell)));
-        ensure!(
-            squares(&loops).difference(&before).all(in_drawing),
-            "a panel there, or the one that it needs next to it, is outside of the target"
-        );
         ensure!(
             !loops.is_empty() && largest_joined(loops.clone()) == loops,
             "the sheet would be no mechanism of one piece: each panel is one of four around a gap, and gaps are joined by two panels"

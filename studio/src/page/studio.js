@@ -134,7 +134,7 @@ connect({
   says({ refused, message }) {
     if (refused && taken) sayAtSheet(message);
     else refuse(refused ? message : "");
-    if (refused) taken = false;
+    if (refused) [taken, centreBefore] = [false, null];
     if (!refused && message) byId("progress").textContent = message;
   },
 
@@ -152,6 +152,7 @@ connect({
     fit = { ...fit, ...expected, target: JSON.stringify(expected.target) };
     sayFit();
     writeFields();
+    keepInView(expected.target);
     taken = false;
   },
 

@@ -143,6 +143,22 @@ function writeFitSliders(box) {
 function askCell(at) {
   if (shownNow.state < stateCount - 1) show({ state: stateCount - 1 });
   else ask({ do: "cell", at: toMm(at) });
+  centreBefore = centreOf(scene.target);
+}
+
+/** Where the target was when a panel was asked for. */
+let centreBefore = null;
+const centreOf = (target) => Object.values(target)[0].centre;
+
+/** Moves the view with the target, so that the sheet stays under the pointer when its corner is another. */
+function keepInView(target) {
+  const centre = centreOf(target);
+  if (centreBefore && centre) {
+    view.x += centre[0] - centreBefore[0];
+    view.y += centre[1] - centreBefore[1];
+    show({});
+  }
+  centreBefore = null;
 }
 
 /** The panels that a side under the slider gives, over the target, and how much of it they show. */
