@@ -13,6 +13,8 @@ use design::sheet::kinematics::deployed_corners;
 use hinge::{HingeDeformation, HingeDesign};
 use std::array::from_fn;
 use std::f64::consts::PI;
+use std::iter::zip;
+use support::Point;
 
 /// (F_a, F_s, M_theta) at some hinges, with their indices (N, N, N mm).
 pub(crate) type Mode = Vec<(usize, [f64; 3])>;
@@ -68,8 +70,7 @@ pub(crate) fn alike(
     designs: &[HingeDesign],
     states: &[HingeDeformation],
 ) -> Modes {
-    let positions: Vec<HingePosition> =
-        std::iter::zip(designs, states).map(HingePosition::new).collect();
+    let positions: Vec<HingePosition> = zip(designs, states).map(HingePosition::new).collect();
     let mut modes = Modes::new();
     // F_a and M_theta of the mirror image are the same, F_s has the other sign.
     for (parity, components) in [(1.0, &[0, 2][..]), (-1.0, &[1][..])] {
@@ -120,11 +121,11 @@ fn component(i: usize, size: f64, design: &HingeDesign) -> [f64; 3] {
 
 /// The corners of all panels: the panel, and its arm from the reference point of the panel in the
 /// deployed sheet (mm).
-fn corner_arms(sheet: &Sheet, step: &LoadStep) -> Vec<(usize, [f64; 2])> {
+fn corner_arms(sheet: &Sheet, step: &LoadStep) -> Vec<(usize, Point)> {
     let corners = deployed_corners(sheet, &step.configuration);
     let panels = corners.iter().enumerate().flat_map(|(k, corners)| {
         let ([x, y], [u_x, u_y, _]) = (sheet.panels[k].reference, step.configuration[k]);
-        let arm = move |corner: &[f64; 2]| (k, [corner[0] - x - u_x, corner[1] - y - u_y]);
+        let arm = move |corner: &Point| (k, [corner[0] - x - u_x, corner[1] - y - u_y]);
         corners.iter().map(arm)
     });
     panels.collect()
@@ -151,7 +152,7 @@ impl HingePosition {
     /// mirror image.
     fn correlation(&self, other: &Self, parity: f64) -> f64 {
         let near = |x: &[f64; 5], y: &[f64; 5]| {
-            let squares = std::iter::zip(x, y).map(|(x, y)| (x - y).powi(2));
+            let squares = zip(x, y).map(|(x, y)| (x - y).powi(2));
             (-0.5 * squares.sum::<f64>()).exp()
         };
         let symmetric = near(&self.own, &other.own) + parity * near(&self.own, &other.mirrored);
@@ -175,7 +176,7 @@ fn factor(n: usize, k: impl Fn(usize, usize) -> f64) -> Vec<Vec<f64>> {
             (k(h, pivot) - known) / root
         };
         let column: Vec<f64> = (0..n).map(entry).collect();
-        std::iter::zip(&mut left, &column).for_each(|(left, part)| *left -= part * part);
+        zip(&mut left, &column).for_each(|(left, part)| *left -= part * part);
         columns.push(column);
     }
     columns

@@ -11,15 +11,15 @@ use design::optimise::outer_loop::SearchState;
 use design::pattern::design_vector::DesignVector;
 use design::sheet::kinematics::deployed_corners;
 use scene::{CoarseSearch, Level, LevelDifference, Scene};
-use support::statistics::rms_and_maximum;
 use support::{Fault, fault};
+use support::{Point, statistics::rms_and_maximum};
 
 /// What is compared of a sheet at a level.
 #[derive(Clone)]
 pub struct AtLevel {
     level: Level,
     /// Panel corners in the state that is compared with the target (mm).
-    corners: Vec<[f64; 2]>,
+    corners: Vec<Point>,
     /// The load at the end of the path, where the motion is prescribed.
     pub load: Option<f64>,
     /// The largest D_peak of a hinge along the path, if every hinge has one.

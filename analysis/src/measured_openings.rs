@@ -12,6 +12,7 @@ use design::sheet::cut_sheet::Sheet;
 use design::sheet::kinematics::hinge_deformations;
 use serde::Serialize;
 use std::f64::consts::{PI, TAU};
+use support::Point;
 
 /// A panel with a measured position.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -19,9 +20,9 @@ pub struct MeasuredPanel {
     /// Number of the panel.
     pub panel: usize,
     /// Measured position of its reference point in the frame of the design (mm).
-    pub centre: [f64; 2],
+    pub centre: Point,
     /// Predicted position of its reference point (mm).
-    pub predicted: [f64; 2],
+    pub predicted: Point,
     /// Measured rotation (rad); `None` if only its centre was measured.
     pub rotation: Option<f64>,
     /// Sum of the squared distances of its marks from their mean (mm^2).
@@ -131,7 +132,7 @@ pub fn openings(sheet: &Sheet, fit: &Fit, panels: &[MeasuredPanel]) -> Vec<Measu
 /// Motion of a panel between a measurement of the closed and one of the deployed sheet in the same
 /// frame, less its predicted motion (mm): the slip of a support. `None` if the panel is not
 /// measured in both.
-pub fn slip(sheet: &Sheet, closed: &Fit, deployed: &Fit, panel: usize) -> Option<[f64; 2]> {
+pub fn slip(sheet: &Sheet, closed: &Fit, deployed: &Fit, panel: usize) -> Option<Point> {
     let seen = |fit: &Fit| {
         let panels = MeasuredPanel::all(sheet, fit);
         let found = panels.into_iter().find(|other| other.panel == panel)?;

@@ -5,6 +5,7 @@ use design::sheet::cut_sheet::Sheet;
 use design::sheet::kinematics::deployed;
 use serde::Serialize;
 use std::fmt;
+use support::Point;
 
 /// A point of a panel that can be measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
@@ -21,7 +22,7 @@ pub struct MeasuredPoint {
     /// What was measured.
     pub mark: Mark,
     /// Its position in the frame of the measurement.
-    pub position: [f64; 2],
+    pub position: Point,
 }
 
 /// A measured point and its prediction, both in the frame of the design (mm).
@@ -30,9 +31,9 @@ pub struct FittedPoint {
     /// What was measured.
     pub mark: Mark,
     /// The measurement, moved into the frame of the design.
-    pub measured: [f64; 2],
+    pub measured: Point,
     /// The position of the mark on the path.
-    pub predicted: [f64; 2],
+    pub predicted: Point,
 }
 
 impl Mark {
@@ -45,13 +46,13 @@ impl Mark {
     }
 
     /// Its position in the flat sheet (mm).
-    pub fn flat(self, sheet: &Sheet) -> [f64; 2] {
+    pub fn flat(self, sheet: &Sheet) -> Point {
         let panel = &sheet.panels[self.panel];
         self.corner.map_or(panel.centroid, |corner| panel.corners[corner])
     }
 
     /// Its position in a deployed sheet (mm).
-    pub fn deployed(self, sheet: &Sheet, configuration: &[[f64; 3]]) -> [f64; 2] {
+    pub fn deployed(self, sheet: &Sheet, configuration: &[[f64; 3]]) -> Point {
         let (panel, motion) = (&sheet.panels[self.panel], configuration[self.panel]);
         deployed(panel, motion, self.flat(sheet))
     }
@@ -69,7 +70,7 @@ impl fmt::Display for Mark {
 
 impl FittedPoint {
     /// Measured minus predicted position (mm).
-    pub fn residual(&self) -> [f64; 2] {
+    pub fn residual(&self) -> Point {
         [0, 1].map(|axis| self.measured[axis] - self.predicted[axis])
     }
 

@@ -40,6 +40,7 @@ use hinge::{HingeDeformation, Regime};
 use scene::{Scene, SupportKind};
 use serde::Serialize;
 use std::array::from_fn;
+use std::iter::zip;
 
 /// The least margin that is distinguished.
 const LEAST_MARGIN: f64 = 0.05;
@@ -78,7 +79,7 @@ impl Stability {
     /// The stability of a deployed plate; `None` where [`out_of_plane`] has none.
     pub fn new(scene: &Scene, problem: &DesignProblem, deployment: &Deployment) -> Option<Self> {
         let path = out_of_plane(scene, problem, deployment)?;
-        let states: Vec<[f64; 2]> = std::iter::zip(&path, &deployment.path)
+        let states: Vec<[f64; 2]> = zip(&path, &deployment.path)
             .map(|(state, step)| [state.margin, step.mean_opening()])
             .collect();
         let crossing = |pair: &[[f64; 2]]| {
@@ -115,17 +116,16 @@ impl OutOfPlane {
 
     /// The heights of the panel corners (mm): SW, SE, NE and NW of every panel.
     pub fn heights(&self, sheet: &Sheet, configuration: &Configuration) -> Option<Vec<f64>> {
-        let panels = std::iter::zip(&sheet.panels, configuration);
-        let heights = std::iter::zip(self.motions.as_ref()?, panels).flat_map(
-            |([z, w_x, w_y], (panel, motion))| {
+        let panels = zip(&sheet.panels, configuration);
+        let heights =
+            zip(self.motions.as_ref()?, panels).flat_map(|([z, w_x, w_y], (panel, motion))| {
                 let [u_x, u_y, _] = motion;
                 let [x, y] = panel.reference;
                 panel.corners.map(|corner| {
                     let [at_x, at_y] = deployed(panel, *motion, corner);
                     z + w_x * (at_y - y - u_y) - w_y * (at_x - x - u_x)
                 })
-            },
-        );
+            });
         Some(heights.collect())
     }
 }
@@ -197,7 +197,7 @@ pub fn out_of_plane(
 fn supported(scene: &Scene, sheet: &Sheet) -> Vec<[bool; 3]> {
     let mut supported = vec![[false; 3]; sheet.panels.len()];
     let attachments = scene.actuation().attachments;
-    for (support, attachment) in std::iter::zip(&scene.config.supports, &attachments) {
+    for (support, attachment) in zip(&scene.config.supports, &attachments) {
         let [height, tilts @ ..] = &mut supported[attachment.panel];
         *height = true;
         let clipped = support.kind == SupportKind::Clamp || attachment.clip.is_some();
@@ -222,11 +222,11 @@ fn moved(
     now: &OfForces,
     mut motions: Vec<f64>,
 ) -> Option<Vec<f64>> {
-    let stiffness = std::iter::zip(&now.elastic, &now.geometric).map(|(e, g)| e + g);
+    let stiffness = zip(&now.elastic, &now.geometric).map(|(e, g)| e + g);
     let factor = pattern.factorise(&stiffness.collect::<Vec<_>>(), Vec::new())?;
     let unbalanced = |state: &OfForces| {
         let (by_tilt, _) = pattern.product(&state.geometric, &motions);
-        std::iter::zip(&state.loads, by_tilt).map(|(load, by_tilt)| load - by_tilt).collect()
+        zip(&state.loads, by_tilt).map(|(load, by_tilt)| load - by_tilt).collect()
     };
     let mut change: Vec<f64> = unbalanced(now);
     if let Some(before) = before {
@@ -247,7 +247,7 @@ fn symmetric(block: JointStiffness) -> JointStiffness {
 /// from [`LEAST_MARGIN`] to [`MOST`]; `None` if `elastic` is not.
 fn margin(pattern: &TangentPattern, elastic: &[f64], geometric: &[f64]) -> Option<f64> {
     let is_stable = |multiple: f64| {
-        let sum = std::iter::zip(elastic, geometric).map(|(e, g)| e + multiple * g);
+        let sum = zip(elastic, geometric).map(|(e, g)| e + multiple * g);
         let sum: Vec<f64> = sum.collect();
         let factor = pattern.factorise(&sum, Vec::new());
         factor.is_some_and(|factor| factor.negative_pivots == 0)

@@ -13,7 +13,7 @@ use scene::{
     target::Target,
 };
 use std::path::{Path, PathBuf};
-use support::{at, regular_file, unread};
+use support::{Point, at, regular_file, unread};
 
 /// A drawing.
 pub struct OwnDrawing {
@@ -93,7 +93,7 @@ impl OwnDrawing {
 
     /// Centre of its bounding box and height (mm), if it has an area (mm^2) and the mean of its
     /// outline is at `centre` (mm).
-    pub fn placed(&self, centre: [f64; 2], area: f64) -> Result<([f64; 2], f64)> {
+    pub fn placed(&self, centre: Point, area: f64) -> Result<(Point, f64)> {
         let placed = Target::place_drawing(&self.contents, self.number, centre, area);
         Ok(placed.map_err(at(self.origin.display()))?)
     }

@@ -97,7 +97,7 @@ fn forces_without_work(rays: &[&[Row]]) -> Option<Defect> {
         let last = ray.last().filter(|last| ray.len() > 4 && last.sample.w > 0.0)?;
         let (mut work, mut before) = (0.0, [[0.0; 3]; 2]);
         for Row { sample, .. } in ray {
-            let (state, forces) = (sample.deformation().to_array(), sample.forces().to_array());
+            let (state, forces) = (sample.deformation().to_array(), sample.forces());
             work += (0..3)
                 .map(|c| 0.5 * (forces[c] + before[1][c]) * (state[c] - before[0][c]))
                 .sum::<f64>();

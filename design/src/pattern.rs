@@ -3,5 +3,4 @@
 pub mod coordinates;
 pub mod cut_pattern;
 pub mod design_vector;
-pub mod fit_variables;
 pub mod grid;

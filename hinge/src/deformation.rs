@@ -54,27 +54,3 @@ impl From<[f64; 3]> for HingeDeformation {
         Self { a, s, theta }
     }
 }
-
-/// Gradient of the stored energy with respect to (a, s, theta): (F_a, F_s, M_theta) in (N, N, N
-/// mm).
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct HingeForces {
-    /// Force conjugate to a (N); positive in tension.
-    pub f_a: f64,
-    /// Force conjugate to s (N).
-    pub f_s: f64,
-    /// Moment conjugate to theta (N mm).
-    pub m_theta: f64,
-}
-
-impl HingeForces {
-    /// As the array [F_a, F_s, M_theta].
-    pub fn to_array(self) -> [f64; 3] {
-        [self.f_a, self.f_s, self.m_theta]
-    }
-
-    /// Forces of the mirrored hinge; see [`HingeDeformation::mirrored`].
-    pub fn mirrored(&self) -> Self {
-        Self { f_s: -self.f_s, ..*self }
-    }
-}

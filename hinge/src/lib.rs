@@ -4,7 +4,7 @@
 //! |---|---|---|
 //! | hinge design g | [`HingeDesign`] | (7) |
 //! | hinge deformation (a, s, theta) | [`HingeDeformation`] | (8) |
-//! | generalised forces (F_a, F_s, M_theta) | [`HingeForces`] | section 2.3 |
+//! | generalised forces (F_a, F_s, M_theta) | [`HingeSample::forces`] | section 2.3 |
 //! | derivatives in both | [`HingeGradient`] | (20) |
 //! | sheet material | [`SheetMaterial`] | section 4.1 |
 //! | films and plates | [`Regime`] | section 5.1 |
@@ -47,7 +47,7 @@ mod regime;
 mod released;
 mod sample;
 
-pub use deformation::{HingeDeformation, HingeForces};
+pub use deformation::HingeDeformation;
 pub use design::{HingeConstants, HingeDesign, InvalidDesign, MIN_W_LIG};
 pub use domain::TrainingDomain;
 pub use gradient::{DesignGradient, HingeGradient};

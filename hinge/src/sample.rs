@@ -1,6 +1,6 @@
 //! One converged increment of a window solve.
 
-use crate::{HingeDeformation, HingeForces};
+use crate::HingeDeformation;
 use serde::{Deserialize, Serialize};
 
 /// The state at one converged increment: (eps, g) -> (W, grad W, D); section 2.4.
@@ -81,9 +81,10 @@ impl HingeSample {
         HingeDeformation { a: self.a, s: self.s, theta: self.theta }
     }
 
-    /// The generalised forces (F_a, F_s, M_theta).
-    pub fn forces(&self) -> HingeForces {
-        HingeForces { f_a: self.f_a, f_s: self.f_s, m_theta: self.m_theta }
+    /// The generalised forces (F_a, F_s, M_theta) (N, N, N mm): the gradient of the stored energy in
+    /// (a, s, theta).
+    pub fn forces(&self) -> [f64; 3] {
+        [self.f_a, self.f_s, self.m_theta]
     }
 
     /// The sample of the mirrored design; see [`HingeDeformation::mirrored`].

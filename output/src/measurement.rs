@@ -17,6 +17,7 @@ use analysis::{
 use design::{geometry::plane::point, sheet::cut_sheet::Sheet};
 use faer::c64;
 use serde::Serialize;
+use support::Point;
 
 /// A measured sheet in numbers.
 #[derive(Clone, Debug, Serialize)]
@@ -55,7 +56,7 @@ pub struct MeasurementReport {
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Alignment {
     /// Position of the design's origin (mm, or pixels if the points are in pixels).
-    pub origin: [f64; 2],
+    pub origin: Point,
     /// Rotation (deg).
     pub rotation_deg: f64,
     /// Measured lengths over lengths of the design.
@@ -80,7 +81,7 @@ pub struct Slip {
     /// The supported panel.
     pub panel: usize,
     /// Its slip in the frame of the design (mm).
-    pub slip: [f64; 2],
+    pub slip: Point,
 }
 
 impl MeasurementReport {

@@ -13,7 +13,10 @@ use design::{
         kinematics::{deployed, deployed_boundaries},
     },
 };
-use support::vtk::{CellKind, Field, UnstructuredGrid};
+use support::{
+    Point,
+    vtk::{CellKind, Field, UnstructuredGrid},
+};
 
 /// A state of the deployment.
 #[derive(Clone, Debug)]
@@ -117,11 +120,11 @@ fn hinge_points(
 }
 
 /// From the flat to the deployed positions.
-fn displacement(moved: impl Iterator<Item = ([f64; 2], [f64; 2])>) -> Field {
+fn displacement(moved: impl Iterator<Item = (Point, Point)>) -> Field {
     let vectors = moved.map(|(from, to)| [to[0] - from[0], to[1] - from[1], 0.0]);
     Field::vector("displacement (mm)", vectors)
 }
 
-fn spatial([x, y]: [f64; 2]) -> [f64; 3] {
+fn spatial([x, y]: Point) -> [f64; 3] {
     [x, y, 0.0]
 }

@@ -8,6 +8,7 @@ use hinge::STANDARD_GRAVITY;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::{f64::consts::TAU, fmt};
+use support::Point;
 
 /// A supported panel.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -30,7 +31,7 @@ pub struct SupportConfig {
     /// Displacement [x, y] of the supported translations at full load (mm); zero for free ones.
     #[serde(default)]
     #[schemars(inner(range(min = -1e5, max = 1e5)))]
-    pub displacement: [f64; 2],
+    pub displacement: Point,
     /// Rotation at full load, counter-clockwise (deg); zero unless the rotation is supported.
     #[serde(default)]
     #[schemars(range(min = -720.0, max = 720.0))]
@@ -62,7 +63,7 @@ pub enum At {
     /// By its name.
     Named(NamedPoint),
     /// [x, y] in the flat sheet (mm); it does not move with the cuts.
-    Point([f64; 2]),
+    Point(Point),
 }
 
 /// A point of a panel that moves with its cuts.
@@ -169,7 +170,7 @@ impl SupportKind {
     }
 
     /// Outline of the symbol, in halves of its size: a square, a triangle or a disc.
-    pub(super) fn symbol(self) -> Vec<[f64; 2]> {
+    pub(super) fn symbol(self) -> Vec<Point> {
         match self {
             Self::Clamp => vec![[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]],
             Self::Pin => vec![[-1.2, -1.4], [1.2, -1.4], [0.0, 0.6]],
@@ -181,7 +182,7 @@ impl SupportKind {
     }
 
     /// The direction in which a roller rolls.
-    pub(super) fn rail(self) -> Option<[f64; 2]> {
+    pub(super) fn rail(self) -> Option<Point> {
         match self {
             Self::Clamp | Self::Pin => None,
             Self::RollerX => Some([1.0, 0.0]),

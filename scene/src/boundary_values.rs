@@ -16,6 +16,7 @@ use design::{
 };
 use serde::Serialize;
 use std::collections::BTreeMap;
+use support::Point;
 
 /// Supports and loads at full load.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -41,9 +42,9 @@ pub struct SupportedPanel {
     /// The prescribed ones of (u_x, u_y, phi) (mm, mm, rad).
     pub motion: [Option<f64>; 3],
     /// Outline of its symbol about the point that is held, in halves of the symbol's size.
-    pub symbol: Vec<[f64; 2]>,
+    pub symbol: Vec<Point>,
     /// The direction in which it rolls.
-    pub rail: Option<[f64; 2]>,
+    pub rail: Option<Point>,
 }
 
 /// A load on one or several panels.
@@ -177,7 +178,7 @@ impl LoadConfig {
 
 impl EdgeLoadConfig {
     /// `from` and `to` are the ends of the edge in the flat sheet.
-    fn on(&self, topology: &Topology, [from, to]: [[f64; 2]; 2]) -> AppliedLoad {
+    fn on(&self, topology: &Topology, [from, to]: [Point; 2]) -> AppliedLoad {
         let length = distance(from, to);
         let resultant = self.traction.map(|traction| traction * length);
         let panels = self.edge.panels(topology);

@@ -9,7 +9,7 @@ use design::{
 };
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use support::{Fault, ensure, refuse};
+use support::{Fault, Point, ensure, refuse};
 
 /// A kept void in a row of the voids.
 const KEPT: char = 'o';
@@ -33,7 +33,7 @@ pub struct TrimmedPanel {
     /// [column, row], counted from [0, 0] at the lower left.
     pub panel: [usize; 2],
     /// Its corners in sides of its cell from the lower left corner of the cell, counter-clockwise.
-    pub corners: Vec<[f64; 2]>,
+    pub corners: Vec<Point>,
     /// Numbers of the corners, counted from 0, that are on the target when the sheet is open: their
     /// distance from it is measured.
     #[serde(default)]

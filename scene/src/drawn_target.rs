@@ -5,15 +5,16 @@ use design::geometry::{
     plane::{complex, point},
     similarity::Similarity,
 };
+use support::Point;
 
 impl TargetShape {
     /// The shape after a motion and a change of size. `points` are samples of it, which stand for a
     /// polygon that is in a file.
-    pub fn placed(self, place: &Similarity, points: &[[f64; 2]]) -> Self {
-        let at = |p: [f64; 2]| point(place.of(complex(p))).map(rounded);
+    pub fn placed(self, place: &Similarity, points: &[Point]) -> Self {
+        let at = |p: Point| point(place.of(complex(p))).map(rounded);
         let scaled = |length: f64| rounded(length * place.scale());
         let turned = |deg: f64| rounded(deg + place.rotation().to_degrees());
-        let all = |points: &[[f64; 2]]| points.iter().copied().map(at).collect();
+        let all = |points: &[Point]| points.iter().copied().map(at).collect();
         match self {
             Self::Circle { centre, radius } => {
                 Self::Circle { centre: at(centre), radius: scaled(radius) }

@@ -2,17 +2,15 @@
 
 use crate::checked_scene::Scene;
 use design::{
-    geometry::{
-        plane::{complex, point},
-        region,
-    },
-    objective::{centre, design_problem::Deployment, shape},
+    geometry::region,
+    objective::{centre, design_problem::Deployment},
     sheet::{
         cut_sheet::Sheet,
         kinematics::{Configuration, deployed, deployed_boundaries},
         topology::PanelCorner,
     },
 };
+use support::Point;
 
 /// How much of a target is seen at least if a viewer recognises it.
 pub const RECOGNISED: f64 = 0.9;
@@ -45,16 +43,10 @@ pub fn seen_in(scene: &Scene, deployment: &Deployment, configuration: &[[f64; 3]
     let sheet = &deployment.sheet;
     let configuration = placed(scene, sheet, configuration);
     let target = scene.target.region();
-    // A target that is fitted to the sheet is as large as the sheet.
-    let turn = shape::turn(deployment.fit);
-    let centre = complex(centre::of(&scene.target.points));
-    let placed = |at: &[f64; 2]| point(centre + turn * (complex(*at) - centre));
-    let panels = deployed_boundaries(sheet, &configuration);
-    let panels = panels.iter().map(|panel| panel.iter().map(placed).collect()).collect();
-    region::seen(panels, &target)
+    region::seen(deployed_boundaries(sheet, &configuration), &target)
 }
 
-fn corners(sheet: &Sheet, corners: Vec<PanelCorner>, configuration: &[[f64; 3]]) -> Vec<[f64; 2]> {
+fn corners(sheet: &Sheet, corners: Vec<PanelCorner>, configuration: &[[f64; 3]]) -> Vec<Point> {
     corners
         .into_iter()
         .map(|(k, corner)| {

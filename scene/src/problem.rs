@@ -67,7 +67,6 @@ impl Scene {
             pattern: start.pattern(grid).expect("the scene has been checked"),
             omega: w_lig.iter().map(|w| widths.omega(*w)).collect(),
             opening: self.hinge.free_opening(),
-            fit: None,
         };
         let optimiser = &self.config.optimiser;
         let mut random = ChaCha8Rng::seed_from_u64(optimiser.seed);

@@ -17,7 +17,7 @@ use std::{
     f64::consts::TAU,
     path::{Path, PathBuf},
 };
-use support::{Fault, at, ensure, fault, key_limits, regular_file};
+use support::{Fault, Point, at, ensure, fault, key_limits, regular_file};
 
 /// A target as written in a scene; lengths in mm, in the coordinates of the flat sheet.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -26,7 +26,7 @@ pub enum TargetShape {
     /// A circle.
     Circle {
         /// Centre (mm).
-        centre: [f64; 2],
+        centre: Point,
         /// Radius (mm).
         #[schemars(range(min = 1e-3))]
         radius: f64,
@@ -34,7 +34,7 @@ pub enum TargetShape {
     /// A rectangle, rotated about its centre.
     Rectangle {
         /// Centre (mm).
-        centre: [f64; 2],
+        centre: Point,
         /// Side lengths [along x, along y] before the rotation (mm).
         #[schemars(inner(range(min = 1e-3)))]
         size: [f64; 2],
@@ -44,14 +44,14 @@ pub enum TargetShape {
     /// A polygon; the last vertex is connected to the first.
     Polygon {
         /// Vertices in order around the outline (mm), at least three.
-        vertices: Vec<[f64; 2]>,
+        vertices: Vec<Point>,
     },
     /// A smooth closed curve through points, in order around the outline: between two of them the
     /// cubic whose tangent at each is half the vector from the point before it to that after it
     /// (Catmull and Rom 1974).
     Curve {
         /// The points (mm), at least three.
-        points: Vec<[f64; 2]>,
+        points: Vec<Point>,
     },
     /// A polygon in a file with one point a line, in order or in blocks whose ends meet: x and y (mm,
     /// or the unit behind their names), with commas, semicolons, tabs or blanks between them; `#`
@@ -67,7 +67,7 @@ pub enum TargetShape {
         /// number, the largest first: `parts.dxf#2`.
         file: PathBuf,
         /// Centre of the bounding box of the outline (mm).
-        centre: [f64; 2],
+        centre: Point,
         /// Height of the bounding box (mm); the width follows from the drawing. A DXF file with a
         /// unit has its own.
         #[schemars(range(min = 1e-3))]
@@ -107,14 +107,14 @@ const DRAWING_POINTS: usize = 2000;
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Target {
     /// The samples, evenly spaced along the outline (mm).
-    pub points: Vec<[f64; 2]>,
+    pub points: Vec<Point>,
     /// The corners of its holes (mm).
-    pub holes: Vec<Vec<[f64; 2]>>,
+    pub holes: Vec<Vec<Point>>,
     /// Length of the outline itself (mm).
     pub length: f64,
     /// A point at which the outline crosses or touches itself, so that its inside is not defined
     /// (mm).
-    pub crossing: Option<[f64; 2]>,
+    pub crossing: Option<Point>,
     /// What the reader of its drawing added or could not read.
     pub notes: Vec<String>,
 }
@@ -161,7 +161,7 @@ impl Target {
     fn drawn(
         bytes: &[u8],
         number: Option<usize>,
-        centre: [f64; 2],
+        centre: Point,
         height: Option<f64>,
         rotation_deg: f64,
         count: usize,
@@ -172,7 +172,7 @@ impl Target {
         let height =
             height.ok_or_else(|| fault!("the drawing states no unit: give `height` (mm)"))?;
         let place = place(&drawn.vertices, centre, height, rotation_deg)?;
-        let placed = |vertices: &Vec<[f64; 2]>| -> Vec<[f64; 2]> {
+        let placed = |vertices: &Vec<Point>| -> Vec<Point> {
             vertices.iter().map(|vertex| point(place.of(complex(*vertex)))).collect()
         };
         let holes = drawn.holes.iter().map(placed).collect();
@@ -190,9 +190,9 @@ impl Target {
     pub fn place_drawing(
         bytes: &[u8],
         number: Option<usize>,
-        centre: [f64; 2],
+        centre: Point,
         area: f64,
-    ) -> Result<([f64; 2], f64), Fault> {
+    ) -> Result<(Point, f64), Fault> {
         let outline = Self::drawn(bytes, number, [0.0; 2], Some(1.0), 0.0, DRAWING_POINTS)?;
         let height = rounded((area / polygon::area(&outline.points).abs()).sqrt());
         let offset = outline.mean();
@@ -207,7 +207,7 @@ impl Target {
     }
 
     /// Mean of the samples: the centre of the outline (mm).
-    pub fn mean(&self) -> [f64; 2] {
+    pub fn mean(&self) -> Point {
         polygon::mean(&self.points)
     }
 
@@ -217,7 +217,7 @@ impl Target {
     }
 
     /// Distance of a point to the curve through the samples (mm).
-    pub fn distance(&self, point: [f64; 2]) -> f64 {
+    pub fn distance(&self, point: Point) -> f64 {
         polygon::distance_to_outline(point, &self.points)
     }
 
@@ -228,7 +228,7 @@ impl Target {
 
     /// Area inside the curve through the samples, without the holes (mm^2).
     pub fn area(&self) -> f64 {
-        let area = |points: &Vec<[f64; 2]>| polygon::area(points).abs();
+        let area = |points: &Vec<Point>| polygon::area(points).abs();
         area(&self.points) - self.holes.iter().map(area).sum::<f64>()
     }
 }
@@ -236,7 +236,7 @@ impl Target {
 const NO_AREA: &str = "the target outline encloses no area: give at least three corners in order";
 
 /// `count` points at equal arc lengths along a closed polygon.
-fn along_polygon(vertices: &[[f64; 2]], count: usize) -> Result<Target, Fault> {
+fn along_polygon(vertices: &[Point], count: usize) -> Result<Target, Fault> {
     let edges = || polygon::edges(vertices);
     let lengths: Vec<f64> = edges().map(|(p, q)| polygon::distance(p, q)).collect();
     let length: f64 = lengths.iter().sum();
@@ -256,7 +256,7 @@ fn along_polygon(vertices: &[[f64; 2]], count: usize) -> Result<Target, Fault> {
     }
     // A file may repeat a vertex, such as the first at its end: an edge without length crosses
     // nothing.
-    let distinct: Vec<[f64; 2]> = (edges().filter(|(p, q)| p != q).map(|(p, _)| p)).collect();
+    let distinct: Vec<Point> = (edges().filter(|(p, q)| p != q).map(|(p, _)| p)).collect();
     let crossing = polygon::self_crossing(&distinct);
     Ok(Target { points, length, crossing, ..Target::default() })
 }
@@ -265,7 +265,7 @@ fn along_polygon(vertices: &[[f64; 2]], count: usize) -> Result<Target, Fault> {
 const CHORDS: usize = 64;
 
 /// Vertices on the closed curve through points.
-fn curve(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
+fn curve(points: &[Point]) -> Vec<Point> {
     let n = points.len();
     if n < 3 {
         return points.to_vec();
@@ -287,8 +287,8 @@ fn curve(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
 /// The motion of vertices that gives their bounding box a height and a centre (mm), and turns them
 /// about it.
 fn place(
-    vertices: &[[f64; 2]],
-    centre: [f64; 2],
+    vertices: &[Point],
+    centre: Point,
     height: f64,
     rotation_deg: f64,
 ) -> Result<Similarity, Fault> {

@@ -161,7 +161,7 @@ impl Scales {
         // d(eta_a, eta_s, theta) / d(a, s, theta)
         let w = design.w_lig;
         let by_deformation = [1.0 / w, 1.0 / w, 1.0];
-        let forces = [sample.f_a, sample.f_s, sample.m_theta];
+        let forces = sample.forces();
         Sample {
             inputs: standardise(features(design, &sample.deformation())),
             origin: standardise(features(design, &HingeDeformation::default())),

@@ -277,7 +277,7 @@ impl Iteration<'_> {
         let own = prepared.energies(states, Order::Forces);
         for (h, end) in ends.iter().enumerate() {
             if let Some(end) = end {
-                let measured = end.forces().to_array();
+                let measured = end.forces();
                 self.missing[h].push(MissingForces {
                     state: states[h],
                     forces: std::array::from_fn(|i| measured[i] - own[h].forces[i]),
@@ -351,7 +351,7 @@ fn force_error(model: &Model, deployment: &Deployment, ends: &[Option<HingeSampl
         let Some(end) = &ends[h] else {
             continue;
         };
-        let measured = end.forces().to_array();
+        let measured = end.forces();
         for (i, arm) in [1.0, 1.0, design.w_lig].into_iter().enumerate() {
             errors += ((measured[i] - own[h].forces[i]) / arm).powi(2);
             squares += (measured[i] / arm).powi(2);

@@ -88,11 +88,7 @@ fn solved_hinges(found: &Balanced) -> SolvedHinges {
     let designs = found.by_law().sheet.designs();
     let hinges = std::iter::zip(designs, &found.hinges);
     let solved = hinges.map(|(design, end)| {
-        end.map(|end| SolvedHinge {
-            design,
-            state: end.deformation(),
-            forces: end.forces().to_array(),
-        })
+        end.map(|end| SolvedHinge { design, state: end.deformation(), forces: end.forces() })
     });
     SolvedHinges { hinges: solved.collect() }
 }

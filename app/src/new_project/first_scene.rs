@@ -25,7 +25,7 @@ use anyhow::{Context, Result};
 use hinge::{MIN_W_LIG, Regime};
 use scene::{CuttingConfig, Paper, rounded};
 use std::{array::from_fn, path::Path};
-use support::relative_path;
+use support::{Point, relative_path};
 use toml_edit::{Array, DocumentMut, Item, Table, value};
 
 /// Minimum side of a panel over the radius of a window: windows of neighbouring hinges do not
@@ -268,7 +268,7 @@ fn name_weights(surrogate: &mut Item, weights: &Path, folder: &Path) -> Result<(
 }
 
 /// The table `[target]` of a drawing, centred at `centre` (mm) and the given area (mm^2).
-fn placed(drawing: &OwnDrawing, centre: [f64; 2], area: f64) -> Result<Item> {
+fn placed(drawing: &OwnDrawing, centre: Point, area: f64) -> Result<Item> {
     let (centre, height) = drawing.placed(centre, area)?;
     let mut svg = Table::new();
     svg["file"] = value(drawing.name("").display().to_string());
@@ -301,7 +301,7 @@ fn panels_of(
 
 /// The opened sheet.
 struct OpenedSheet {
-    centre: [f64; 2],
+    centre: Point,
     size: [f64; 2],
     rotation_deg: f64,
     /// Direction in which it is pulled open.

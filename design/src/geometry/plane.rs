@@ -2,17 +2,18 @@
 //! phi), the scalar product is Re(conj(a) b), the vector product Im(conj(a) b).
 
 use faer::c64;
+use support::Point;
 
 /// The imaginary unit: a quarter turn counter-clockwise.
 pub const I: c64 = c64::new(0.0, 1.0);
 
 /// The complex number x + iy of a point.
-pub fn complex([x, y]: [f64; 2]) -> c64 {
+pub fn complex([x, y]: Point) -> c64 {
     c64::new(x, y)
 }
 
 /// The point (x, y) of the complex number x + iy.
-pub fn point(z: c64) -> [f64; 2] {
+pub fn point(z: c64) -> Point {
     [z.re, z.im]
 }
 

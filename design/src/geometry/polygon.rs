@@ -81,7 +81,7 @@ pub fn bounds(points: impl IntoIterator<Item = Point>) -> [Point; 2] {
 }
 
 /// Width and height of a rectangle from its lower left to its upper right corner.
-pub fn size([low, high]: [[f64; 2]; 2]) -> [f64; 2] {
+pub fn size([low, high]: [Point; 2]) -> [f64; 2] {
     [high[0] - low[0], high[1] - low[1]]
 }
 
@@ -91,7 +91,7 @@ pub fn distance_to_segment(point: Point, a: Point, b: Point) -> f64 {
 }
 
 /// Distance between two segments; zero if they cross (mm).
-pub fn distance_between_segments(s: [[f64; 2]; 2], t: [[f64; 2]; 2]) -> f64 {
+pub fn distance_between_segments(s: [Point; 2], t: [Point; 2]) -> f64 {
     let separates =
         |[a, b]: [Point; 2], [p, q]: [Point; 2]| side((a, b), p) * side((a, b), q) < 0.0;
     if separates(s, t) && separates(t, s) {

@@ -14,7 +14,7 @@ use support::Point;
 const ARC: f64 = 0.2;
 
 /// The corners of a closed polygon.
-pub type Ring = Vec<[f64; 2]>;
+pub type Ring = Vec<Point>;
 
 /// Disjoint polygons. The contours of each are its outline, counter-clockwise, and its holes,
 /// clockwise.

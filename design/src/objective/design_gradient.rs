@@ -20,7 +20,7 @@ use crate::{
     },
 };
 use std::iter::zip;
-use support::vectors;
+use support::{Point, vectors};
 
 /// The partial derivatives of a function of a deployment.
 pub(super) struct Partials<'a> {
@@ -29,15 +29,13 @@ pub(super) struct Partials<'a> {
     /// The panel corners whose deployed positions the function depends on.
     pub outline: &'a [PanelCorner],
     /// Gradient in their deployed positions.
-    pub by_outline: &'a [[f64; 2]],
+    pub by_outline: &'a [Point],
     /// Gradient in each hinge at each step of `path`.
     pub by_states: &'a [Vec<HingeGradient>],
     /// Gradient in the load factor of the last step.
     pub by_load_factor: f64,
     /// Gradient in the flat sheet, at fixed states and designs of its hinges.
     pub by_sheet: SheetGradient,
-    /// Gradient in size and rotation of a fitted target.
-    pub by_fit: [f64; 2],
     /// Gradient in the forces of the supports in the last step; `None` if all are zero.
     pub by_reactions: Option<Vec<Motion>>,
 }
@@ -81,7 +79,6 @@ impl DesignProblem {
             by_states: &value.gradient.by_states,
             by_load_factor: 0.0,
             by_sheet: value.gradient.by_sheet,
-            by_fit: value.gradient.by_fit,
             by_reactions: None,
         };
         let gradient = self.design_gradient(design, &deployment, law, partials)?;
@@ -146,7 +143,6 @@ impl DesignProblem {
                 .map(|(&omega, by_width)| by_width * self.widths.slope(omega))
                 .collect(),
             opening: by_opening,
-            fit: (design.fit).map(|fit| fit.pullback(&self.outline, partials.by_fit, &by_outline)),
         };
         Ok(Gradient { design, sensitivities, virtual_motion, adjoint_residual })
     }
@@ -157,7 +153,7 @@ impl DesignProblem {
 fn outline_pullback<'a>(
     sheet: &Sheet,
     compared: &LoadStep,
-    outline: impl Iterator<Item = (&'a PanelCorner, &'a [f64; 2])>,
+    outline: impl Iterator<Item = (&'a PanelCorner, &'a Point)>,
     by_sheet: &mut SheetGradient,
 ) -> Vec<Motion> {
     let mut by_compared = vec![[0.0; 3]; sheet.panels.len()];

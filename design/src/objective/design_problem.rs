@@ -17,7 +17,6 @@ use crate::{
     pattern::{
         cut_pattern::{CutPattern, Outline},
         design_vector::{DesignVector, WidthChart},
-        fit_variables::FitVariables,
     },
     sheet::{
         cut_sheet::{Sheet, SheetOptions},
@@ -118,8 +117,6 @@ pub struct Deployment {
     /// Whether the path was followed from the flat sheet; `false` if it was corrected from the path
     /// of a design near it.
     pub followed: bool,
-    /// How the sheet is fitted to its target.
-    pub fit: Option<FitVariables>,
 }
 
 /// The gradient of L with respect to quantities that are constant during the design.
@@ -233,20 +230,11 @@ impl DesignProblem {
 
     /// Lines 2-4 of Algorithm 1: cut pattern and flat sheet.
     pub fn cut(&self, design: &DesignVector) -> Result<(CutPattern, Sheet), DesignError> {
-        let pattern =
-            CutPattern::new(self.topology.grid, self.outline_of(design), &design.pattern)?;
+        let pattern = CutPattern::new(self.topology.grid, self.outline, &design.pattern)?;
         let w_lig: Vec<f64> =
             (design.omega.iter()).map(|&omega| self.widths.width(omega)).collect();
         let sheet = self.sheet(&pattern, &w_lig)?;
         Ok((pattern, sheet))
-    }
-
-    /// The outline of the flat sheet of a design.
-    pub fn outline_of(&self, design: &DesignVector) -> Outline {
-        match design.fit {
-            None => self.outline,
-            Some(fit) => fit.outline(&self.outline),
-        }
     }
 
     /// The sheet of a pattern with the given ligament widths (mm), held and pulled where the
@@ -299,7 +287,7 @@ impl DesignProblem {
                 (path, followed, Some(law))
             }
         };
-        let deployment = Deployment { pattern, sheet, path, followed, fit: design.fit };
+        let deployment = Deployment { pattern, sheet, path, followed };
         Ok((deployment, law))
     }
 
@@ -323,7 +311,6 @@ impl DesignProblem {
             sheet: &deployment.sheet,
             path: &deployment.path,
             outline: &deployment.outline(outline),
-            fit: deployment.fit,
         }))
     }
 }

@@ -35,7 +35,7 @@ use crate::{
 };
 use hinge::HingeDeformation;
 use std::iter::zip;
-use support::{fault, vectors::dot};
+use support::{Point, fault, vectors::dot};
 
 /// Inputs of the equilibrium other than the design; by default the inputs of the problem.
 #[derive(Clone, Debug, PartialEq)]
@@ -70,7 +70,7 @@ impl Response {
     }
 
     /// Deployed corners SW, SE, NE, NW of every panel (mm).
-    pub fn corners(&self) -> Vec<[[f64; 2]; 4]> {
+    pub fn corners(&self) -> Vec<[Point; 4]> {
         deployed_corners(&self.deployment.sheet, &self.state().configuration)
     }
 }
@@ -79,7 +79,7 @@ impl Response {
 #[derive(Clone, Debug, PartialEq)]
 pub struct ResponseCotangent {
     /// Gradient in the deployed corners of every panel.
-    pub corners: Vec<[[f64; 2]; 4]>,
+    pub corners: Vec<[Point; 4]>,
     /// Gradient in the reactions.
     pub reactions: Vec<Motion>,
     /// Gradient in the load factor.
@@ -172,10 +172,7 @@ impl DesignProblem {
         let state = path.last().ok_or_else(|| fault!("no equilibrium is near the known one"))?;
         let reactions = mechanics.solver.reactions(hinged, &converged(state)?.configuration);
         drop(law);
-        Ok(Response {
-            deployment: Deployment { pattern, sheet, path, followed, fit: design.fit },
-            reactions,
-        })
+        Ok(Response { deployment: Deployment { pattern, sheet, path, followed }, reactions })
     }
 
     /// The gradient in the inputs of a response of this problem to `design` of a function with the
@@ -202,7 +199,6 @@ impl DesignProblem {
             by_states: &vec![vec![HingeGradient::default()]; sheet.hinges.len()],
             by_load_factor: by.load_factor,
             by_sheet: SheetGradient::zeros(&sheet.topology),
-            by_fit: [0.0; 2],
             by_reactions: of_supports.then_some(reactions),
         };
         let gradient =

@@ -50,10 +50,9 @@ pub fn outline_error(objective: &Objective, deployment: &Deployment) -> f64 {
 pub fn outline_error_at(objective: &Objective, deployment: &Deployment, step: &LoadStep) -> f64 {
     let shape = &objective.shape;
     let points = deployment.sheet.free_outline_corners();
-    let outline = shape.placed(&deployment.outline_at(step, &points), deployment.fit);
+    let outline = shape.placed(&deployment.outline_at(step, &points));
     let (squared, _) = chamfer(&outline, &shape.target, 0.0);
-    let size = deployment.fit.map_or(1.0, |fit| fit.ln_size.exp());
-    size * squared.sqrt()
+    squared.sqrt()
 }
 
 /// A term as text: four digits after the point, or scientific notation if these do not show it.

@@ -2,17 +2,12 @@
 //! points P are the panel corners on the outline that belong to no hinge.
 
 use crate::{
-    geometry::{
-        chamfer::chamfer,
-        plane::{I, complex, dot, point},
-    },
+    geometry::chamfer::chamfer,
     objective::{
         centre,
         term::{Deployed, Term, TermGradient},
     },
-    pattern::fit_variables::FitVariables,
 };
-use faer::c64;
 use support::Point;
 
 /// The distance of the deployed outline to a target.
@@ -37,9 +32,9 @@ impl Term for ShapeDistance {
     }
 
     fn evaluate(&self, at: &Deployed, weight: f64, gradient: &mut TermGradient) -> f64 {
-        let placed = self.placed(at.outline, at.fit);
+        let placed = self.placed(at.outline);
         let (chamfer, by_placed) = self.distance(&placed);
-        self.pullback(at, &placed, &by_placed, weight, gradient);
+        self.pullback(at, &by_placed, weight, gradient);
         chamfer
     }
 }
@@ -50,40 +45,26 @@ impl ShapeDistance {
         Self { target, coverage_weight: 0.5, centred: false }
     }
 
-    /// The points P in the position in which they are compared with the target (mm): centred, and
-    /// in the size and the rotation of a target that is fitted to them.
-    pub fn placed(&self, outline: &[Point], fit: Option<FitVariables>) -> Vec<Point> {
+    /// The points P in the position in which they are compared with the target (mm).
+    pub fn placed(&self, outline: &[Point]) -> Vec<Point> {
         let [x, y] = match self.centred {
             true => centre::of(outline),
             false => [0.0; 2],
         };
-        let turn = turn(fit);
-        let place = |[px, py]: &Point| point(turn * c64::new(px - x, py - y));
-        outline.iter().map(place).collect()
+        outline.iter().map(|[px, py]| [px - x, py - y]).collect()
     }
 
-    /// Adds `weight` times the gradient in the points P, and in the fit, from that in the placed
-    /// points.
+    /// Adds `weight` times the gradient in the points P, from the gradient in the placed points.
     pub(crate) fn pullback(
         &self,
         at: &Deployed,
-        placed: &[Point],
         by_placed: &[Point],
         weight: f64,
         gradient: &mut TermGradient,
     ) {
-        let back = turn(at.fit).conj();
-        let turned: Vec<_> =
-            (by_placed.iter()).map(|slope| point(back * complex(*slope))).collect();
-        let by_outline = match self.centred {
-            true => centre::pullback(at.outline, &turned),
-            false => turned,
-        };
-        gradient.add_by_outline(weight, &by_outline);
-        for (p, slope) in std::iter::zip(placed, by_placed) {
-            let (p, slope) = (complex(*p), complex(*slope));
-            gradient.by_fit[0] -= weight * dot(slope, p);
-            gradient.by_fit[1] -= weight * dot(slope, I * p);
+        match self.centred {
+            true => gradient.add_by_outline(weight, &centre::pullback(at.outline, by_placed)),
+            false => gradient.add_by_outline(weight, by_placed),
         }
     }
 
@@ -91,10 +72,4 @@ impl ShapeDistance {
     pub fn distance(&self, placed: &[Point]) -> (f64, Vec<Point>) {
         chamfer(placed, &self.target, self.coverage_weight)
     }
-}
-
-/// Scale and rotation of the sheet to the target as in the scene: a target of twice the size has a
-/// sheet of half the size.
-pub fn turn(fit: Option<FitVariables>) -> c64 {
-    fit.map_or(c64::ONE, |fit| c64::cis(-fit.rotation) * (-fit.ln_size).exp())
 }

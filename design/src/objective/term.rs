@@ -4,7 +4,6 @@
 use crate::{
     equilibrium::load_step::LoadStep,
     hinge_law::HingeGradient,
-    pattern::fit_variables::FitVariables,
     sheet::cut_sheet::{Sheet, SheetGradient},
 };
 use faer::c64;
@@ -62,8 +61,6 @@ pub struct Deployed<'a> {
     pub path: &'a [LoadStep],
     /// The deployed positions of the outline points P (mm).
     pub outline: &'a [Point],
-    /// How the sheet is fitted to its target.
-    pub fit: Option<FitVariables>,
 }
 
 /// The gradient of weighted terms.
@@ -78,8 +75,6 @@ pub struct TermGradient {
     pub by_states: Vec<Vec<HingeGradient>>,
     /// Gradient in the flat sheet, at fixed states and designs of its hinges.
     pub by_sheet: SheetGradient,
-    /// Gradient in size and rotation of a fitted target.
-    pub by_fit: [f64; 2],
 }
 
 /// A sum over the panels of functions of their corners, times `scale`. `function` adds its value
@@ -124,7 +119,6 @@ impl TermGradient {
             by_measures: vec![vec![MeasureGradient::default(); steps]; hinges],
             by_states: vec![vec![HingeGradient::default(); steps]; hinges],
             by_sheet: SheetGradient::zeros(&at.sheet.topology),
-            by_fit: [0.0; 2],
         }
     }
 
@@ -156,7 +150,7 @@ pub(crate) fn on_panels(term: &dyn Term, panels: &[[[f64; 2]; 4]]) -> (f64, Vec<
     for (panel, corners) in sheet.panels.iter_mut().zip(panels) {
         panel.corners = *corners;
     }
-    let at = Deployed { sheet: &sheet, path: &[], outline: &[], fit: None };
+    let at = Deployed { sheet: &sheet, path: &[], outline: &[] };
     let mut gradient = TermGradient::zeros(&at);
     let value = term.evaluate(&at, 1.0, &mut gradient);
     let by_corners = gradient.by_sheet.corners.into_iter();

@@ -1,7 +1,6 @@
 //! The terms of the objective, a file each; their keys, and their list.
 
 mod compression;
-mod cut_angles;
 pub mod damage;
 mod domain;
 mod fastenings;
@@ -11,7 +10,6 @@ mod shear;
 mod symmetric_difference;
 
 pub use compression::Compression;
-pub use cut_angles::CutAngles;
 pub use damage::DamageFunctional;
 pub use domain::DomainPenalty;
 pub use fastenings::Fastenings;
@@ -137,7 +135,7 @@ impl ObjectiveConfig {
             coverage_weight: COVERAGE,
             centred: context.law.is_none(),
         };
-        shape.target = shape.placed(context.target, None);
+        shape.target = shape.placed(context.target);
         shape
     }
 }
@@ -195,16 +193,13 @@ mod tests {
         let circle = angles.map(|t| [90.0 + 60.0 * t.cos(), 10.0 + 60.0 * t.sin()]);
         let state = [[-0.02, 0.03], [-0.02, 0.02], [0.0, 0.1]];
         let domain = TrainingDomain::from_box(state, [1.0, 2.5], [0.8, 1.5]);
-        let mut objective = config.objective(&TermContext {
+        config.objective(&TermContext {
             target: &circle.collect::<Vec<_>>(),
             law: Some(&Law(domain)),
             mean_panel_area: 10.0,
             r_win: 10.0,
             attachments: Vec::new(),
-        });
-        let angles = Weighted::new(0.8, CutAngles { minimum: 1.3 });
-        objective.penalties.push(angles);
-        objective
+        })
     }
 
     /// A sheet of slender panels.
@@ -253,7 +248,7 @@ mod tests {
             step
         };
         let path: Vec<LoadStep> = (0..STEPS).map(step).collect();
-        let at = Deployed { sheet: &sheet, path: &path, outline: outline.as_chunks().0, fit: None };
+        let at = Deployed { sheet: &sheet, path: &path, outline: outline.as_chunks().0 };
         let mut gradient = TermGradient::zeros(&at);
         let value = term.evaluate(&at, 1.0, &mut gradient);
         add_by_states(&at, &mut gradient);

@@ -3,7 +3,6 @@
 
 use crate::pattern::{
     coordinates::{PatternCoordinates, logistic, logit},
-    fit_variables::FitVariables,
     grid::Grid,
 };
 use serde::{Deserialize, Serialize};
@@ -19,9 +18,6 @@ pub struct DesignVector {
     /// The opening angle of the ideal deployment (rad), if it is a design variable.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub opening: Option<f64>,
-    /// How sheet and target are fitted to each other, if they are.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub fit: Option<FitVariables>,
 }
 
 impl DesignVector {
@@ -31,12 +27,10 @@ impl DesignVector {
             pattern: PatternCoordinates::uniform(grid),
             omega: vec![0.0; grid.hinge_count()],
             opening: None,
-            fit: None,
         }
     }
 
-    /// All coordinates as one vector: z, ell of the bottom, right, top, left edge, omega, opening,
-    /// fit.
+    /// All coordinates as one vector: z, ell of the bottom, right, top, left edge, omega, opening.
     pub fn to_flat(&self) -> Vec<f64> {
         self.clone().coordinates_mut().map(|coordinate| *coordinate).collect()
     }
@@ -51,20 +45,16 @@ impl DesignVector {
 
     /// Whether all blocks have the same lengths.
     pub fn same_shape(&self, other: &Self) -> bool {
-        let lengths = |Self { pattern, omega, opening, fit }: &Self| {
+        let lengths = |Self { pattern, omega, opening }: &Self| {
             let ell = pattern.ell.each_ref().map(Vec::len);
-            (pattern.z.len(), ell, omega.len(), opening.is_some(), fit.is_some())
+            (pattern.z.len(), ell, omega.len(), opening.is_some())
         };
         lengths(self) == lengths(other)
     }
 
     fn coordinates_mut(&mut self) -> impl Iterator<Item = &mut f64> {
         let PatternCoordinates { z, ell } = &mut self.pattern;
-        z.iter_mut()
-            .chain(ell.iter_mut().flatten())
-            .chain(&mut self.omega)
-            .chain(&mut self.opening)
-            .chain(self.fit.iter_mut().flat_map(FitVariables::coordinates_mut))
+        z.iter_mut().chain(ell.iter_mut().flatten()).chain(&mut self.omega).chain(&mut self.opening)
     }
 }
 

@@ -8,6 +8,7 @@ use crate::{
     sheet::cut_sheet::{AttachmentPoint, PanelPoint, Sheet, SheetGradient},
 };
 use faer::c64;
+use support::Point;
 
 /// What a hole or a clip is measured to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -69,7 +70,7 @@ impl AttachmentPoint {
     }
 
     /// The ends of its clip (mm).
-    pub fn clip_ends(&self, sheet: &Sheet) -> Option<[[f64; 2]; 2]> {
+    pub fn clip_ends(&self, sheet: &Sheet) -> Option<[Point; 2]> {
         let (Some(width), PanelPoint::Middle(ends)) = (self.clip, self.point) else {
             return None;
         };
@@ -84,7 +85,7 @@ impl AttachmentPoint {
     }
 
     /// The two points between which the distance to an obstacle is measured (mm).
-    fn nearest(&self, sheet: &Sheet, obstacle: Obstacle) -> [[f64; 2]; 2] {
+    fn nearest(&self, sheet: &Sheet, obstacle: Obstacle) -> [Point; 2] {
         let panel = &sheet.panels[self.panel];
         let centre = panel.position(self.point);
         match obstacle {

@@ -75,7 +75,7 @@ impl Panel {
 
     /// Whether a corner of its cell is a corner of the panel.
     pub fn has_corner(&self, corner: usize) -> bool {
-        const CORNERS: [[f64; 2]; 4] = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+        const CORNERS: [Point; 4] = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
         self.trim.as_ref().is_none_or(|trim| trim.contains(&CORNERS[corner]))
     }
 

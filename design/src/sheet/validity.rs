@@ -7,6 +7,7 @@ use crate::{
     },
     sheet::{cut_sheet::Sheet, kinematics::deployed_boundaries},
 };
+use support::Point;
 
 /// [`overlap`] from which panels lie over each other: more than a slit and rounding leave.
 pub const OVERLAP: f64 = 0.01;
@@ -40,7 +41,7 @@ fn neighbours(sheet: &Sheet) -> impl Iterator<Item = (usize, usize)> {
 fn most_shared(polygons: Vec<Ring>) -> f64 {
     let regions = polygons.into_iter().map(|polygon| Region::union_of(vec![polygon]));
     let regions: Vec<_> = regions.map(|region| (region.bounds(), region)).collect();
-    let met = |[low, high]: &[[f64; 2]; 2], [from, to]: &[[f64; 2]; 2]| {
+    let met = |[low, high]: &[Point; 2], [from, to]: &[Point; 2]| {
         (0..2).all(|c| low[c] < to[c] && from[c] < high[c])
     };
     let shared = regions.iter().enumerate().flat_map(|(i, (bounds, one))| {

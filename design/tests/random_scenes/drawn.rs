@@ -192,7 +192,6 @@ impl Drawn {
             pattern: self.pattern.clone(),
             omega: self.w_lig.iter().map(|w| chart.omega(*w)).collect(),
             opening: None,
-            fit: None,
         }
     }
 

@@ -53,7 +53,6 @@ fn vector(case: &Value, key: &str) -> DesignVector {
         pattern: coordinates(&case[key]),
         omega: get(&case[key], "omega"),
         opening: None,
-        fit: None,
     }
 }
 

@@ -13,7 +13,6 @@ fn start() -> DesignVector {
         pattern: coordinates(&case),
         omega: Random::new(1).numbers(cases::grid(&case).hinge_count(), 1.0),
         opening: None,
-        fit: None,
     }
 }
 
@@ -39,7 +38,6 @@ fn pulled_back(
         pattern: pattern.pullback(&by_points).0,
         omega: by_omega.collect(),
         opening: None,
-        fit: None,
     }
 }
 

@@ -4,9 +4,8 @@ use crate::prelude::*;
 use design::hinge_law::DamageMeasure;
 use design::objective::term::Weighted;
 use design::objective::terms::{
-    Compression, CutAngles, DamageFunctional, DomainPenalty, PanelShape, Shear, SymmetricDifference,
+    Compression, DamageFunctional, DomainPenalty, PanelShape, Shear, SymmetricDifference,
 };
-use design::pattern::fit_variables::FitVariables;
 use hinge::TrainingDomain;
 use std::path::Path;
 use surrogate::Surrogate;
@@ -99,11 +98,10 @@ pub fn start() -> DesignVector {
         },
         omega: random.numbers(12, 1.0),
         opening: None,
-        fit: None,
     }
 }
 
-/// Asserts order 2 along a random direction in each block (z, ell, omega, opening, fit).
+/// Asserts order 2 along a random direction in each block (z, ell, omega, opening).
 pub fn assert_order_two(problem: &DesignProblem, design: &DesignVector) {
     let evaluation = problem.evaluate(design).unwrap();
     for step in &evaluation.deployment.path {
@@ -119,8 +117,7 @@ pub fn assert_order_two(problem: &DesignProblem, design: &DesignVector) {
         ("z", 0..z),
         ("ell", z..z + ell),
         ("omega", z + ell..hinges),
-        ("opening", hinges..hinges + design.opening.iter().count()),
-        ("fit", hinges + design.opening.iter().count()..x.len()),
+        ("opening", hinges..x.len()),
     ];
     for (name, block) in blocks.into_iter().filter(|(_, block)| !block.is_empty()) {
         if gradient[block.clone()].iter().all(|slope| *slope == 0.0) {
@@ -145,10 +142,11 @@ fn ideal_deployment() {
     assert_order_two(&problem(model, HingePoint::Corner), &design);
 }
 
-/// With the opening as a design variable, and held.
+/// The opening is a design variable, or held; the outline is centred.
 #[test]
 fn taylor_rate_of_two_with_the_symmetric_difference() {
     let mut problem = problem(Model::Ideal { opening: 0.9 }, HingePoint::Corner);
+    problem.objective.shape.centred = true;
     let difference = SymmetricDifference::new(problem.objective.shape.clone());
     let difference = Weighted::new(1e5, difference);
     problem.objective.penalties.push(difference);
@@ -158,25 +156,6 @@ fn taylor_rate_of_two_with_the_symmetric_difference() {
         assert!(evaluation.terms["symmetric_difference"] > 0.0);
         assert_order_two(&problem, &design);
     }
-}
-
-/// The size and the rotation of the target, and the corners of the sheet in its stock.
-#[test]
-fn a_sheet_and_its_target_are_fitted_to_each_other() {
-    let mut problem = problem(Model::Ideal { opening: 0.9 }, HingePoint::Corner);
-    problem.objective.shape.centred = true;
-    let difference = SymmetricDifference::new(problem.objective.shape.clone());
-    let angles = CutAngles { minimum: 1.5 };
-    problem.objective.penalties = vec![Weighted::new(1e5, difference), Weighted::new(1e4, angles)];
-    let corners = Random::new(17).numbers(8, 0.4);
-    let corners = std::array::from_fn(|i| [1.5 + corners[2 * i], 1.5 + corners[2 * i + 1]]);
-    let design = DesignVector {
-        fit: Some(FitVariables { ln_size: -0.1, rotation: 0.2, corners }),
-        ..start()
-    };
-    let evaluation = problem.evaluate(&design).unwrap();
-    assert!(evaluation.terms["cut_angles"] > 0.0);
-    assert_order_two(&problem, &design);
 }
 
 pub fn springs() -> LinearLaw {

@@ -2,7 +2,7 @@
 //! from 0 here and from 1 in a deck.
 
 use crate::{DeformationPath, StepControl};
-use hinge::{HingeDeformation, HingeForces, SheetMaterial};
+use hinge::{HingeDeformation, SheetMaterial};
 use support::{Point, add_line};
 
 /// A number in a format that ccx reads: a field has 20 characters, and this format uses at most 19.
@@ -162,13 +162,9 @@ impl PanelMotion {
     /// (F_a, F_s, M_theta) from the resultant `force` (N) on panel B and its `moment` (N mm) about
     /// the current position of O on B. They are the gradient of the work with respect to (a, s,
     /// theta); M_theta has a contribution of the force because du rotates with theta/2.
-    pub(crate) fn forces(&self, force: Point, moment: f64) -> HingeForces {
+    pub(crate) fn forces(&self, force: Point, moment: f64) -> [f64; 3] {
         let [f_a, f_s] = rotated(force, -0.5 * self.theta);
-        HingeForces {
-            f_a,
-            f_s,
-            m_theta: moment + 0.5 * (self.du[0] * force[1] - self.du[1] * force[0]),
-        }
+        [f_a, f_s, moment + 0.5 * (self.du[0] * force[1] - self.du[1] * force[0])]
     }
 }
 
@@ -248,8 +244,7 @@ mod driven_arc_tests {
             let x = [80.0, -30.0];
             let motion = PanelMotion::new(&HingeDeformation { a, s, theta });
             let arm = rotated(x, theta);
-            let forces = motion.forces([fx, fy], arm[0] * fy - arm[1] * fx);
-            let expected = [forces.f_a, forces.f_s, forces.m_theta];
+            let expected = motion.forces([fx, fy], arm[0] * fy - arm[1] * fx);
             for i in 0..3 {
                 let h = 1e-5;
                 let (mut plus, mut minus) = ([a, s, theta], [a, s, theta]);

@@ -1,7 +1,7 @@
 //! Converts printed frames to hinge samples: energy, work, forces, damage.
 
 use crate::{OutputFrame, PanelMotion, WindowModel, rotated};
-use hinge::{HingeDeformation, HingeDesign, HingeForces, HingeSample, SheetMaterial};
+use hinge::{HingeDeformation, HingeDesign, HingeSample, SheetMaterial};
 use mesher::WindowMesh;
 use std::f64::consts::PI;
 
@@ -12,7 +12,7 @@ const PEAK_FRACTION: f64 = 0.01;
 /// One sample per frame, in the order of the frames.
 pub(crate) fn samples(model: &WindowModel, frames: &[OutputFrame]) -> Vec<HingeSample> {
     let (mesh, material) = (model.mesh, model.material);
-    let mut before = (HingeDeformation::default(), HingeForces::default());
+    let mut before = [[0.0; 3]; 2];
     let energies = frames.iter().map(|frame| frame.energy.abs());
     let largest_w = energies.fold(f64::MIN_POSITIVE, f64::max);
     let mut w_work = 0.0;
@@ -21,8 +21,10 @@ pub(crate) fn samples(model: &WindowModel, frames: &[OutputFrame]) -> Vec<HingeS
         .map(|frame| {
             let deformation = model.path.at(frame.lambda);
             let forces = arc_forces(mesh, &deformation, &frame.reactions);
-            w_work += trapezoid(before, (deformation, forces));
-            before = (deformation, forces);
+            let state = [deformation.to_array(), forces];
+            w_work += trapezoid(before, state);
+            before = state;
+            let [f_a, f_s, m_theta] = forces;
             let volumes = mesh.gauss_volumes.iter().flatten().copied();
             let points = frame.peeq.iter().copied().zip(volumes).collect();
             let damage = Damage::new(points, &mesh.design, mesh.thickness, material);
@@ -34,9 +36,9 @@ pub(crate) fn samples(model: &WindowModel, frames: &[OutputFrame]) -> Vec<HingeS
                 w: frame.energy,
                 w_work,
                 w_elastic: elastic_energy(mesh, material, &frame.stress),
-                f_a: forces.f_a,
-                f_s: forces.f_s,
-                m_theta: forces.m_theta,
+                f_a,
+                f_s,
+                m_theta,
                 plastic_integral: damage.plastic_integral,
                 d: damage.d,
                 d_peak: Some(damage.d_peak),
@@ -54,7 +56,7 @@ fn arc_forces(
     mesh: &WindowMesh,
     deformation: &HingeDeformation,
     reactions: &[(usize, [f64; 3])],
-) -> HingeForces {
+) -> [f64; 3] {
     let tip = mesh.design.tip();
     let (mut force, mut moment) = ([0.0; 2], 0.0);
     for (node, [fx, fy, _]) in reactions {
@@ -68,13 +70,8 @@ fn arc_forces(
 }
 
 /// Work between two states: mean force times change of deformation.
-fn trapezoid(
-    (from, force_from): (HingeDeformation, HingeForces),
-    (to, force_to): (HingeDeformation, HingeForces),
-) -> f64 {
-    0.5 * (force_from.f_a + force_to.f_a) * (to.a - from.a)
-        + 0.5 * (force_from.f_s + force_to.f_s) * (to.s - from.s)
-        + 0.5 * (force_from.m_theta + force_to.m_theta) * (to.theta - from.theta)
+fn trapezoid([from, force_from]: [[f64; 3]; 2], [to, force_to]: [[f64; 3]; 2]) -> f64 {
+    (0..3).map(|i| 0.5 * (force_from[i] + force_to[i]) * (to[i] - from[i])).sum()
 }
 
 /// Integral of sigma : C^-1 : sigma / 2 over the window (N mm), assuming small elastic strains.
@@ -152,11 +149,7 @@ mod tests {
 
     #[test]
     fn the_trapezoid_is_exact_for_a_linear_force() {
-        let state = |x: f64| {
-            let forces = HingeForces { f_a: 3.0 * x, f_s: 2.0 * x, m_theta: 7.0 * x };
-            let deformation = HingeDeformation { a: x, s: 2.0 * x, theta: 0.5 * x };
-            (deformation, forces)
-        };
+        let state = |x: f64| [[x, 2.0 * x, 0.5 * x], [3.0 * x, 2.0 * x, 7.0 * x]];
         let work = trapezoid(state(0.0), state(0.3)) + trapezoid(state(0.3), state(1.0));
         assert!((work - 0.5 * (3.0 + 4.0 + 3.5)).abs() < 1e-14);
     }

@@ -10,7 +10,7 @@ use crate::{
 };
 use mesher::{ElementKind, MeshPart, SheetMesh, SheetShape, Side};
 use std::iter::zip;
-use support::add_line;
+use support::{Point, add_line};
 
 /// Stiffness of the table below a node (N/mm).
 const TABLE_STIFFNESS: f64 = 0.2;
@@ -234,7 +234,7 @@ impl SheetModel<'_> {
 
     fn write_history(&self, d: &mut String) {
         let history = self.problem.history();
-        let in_time = |pairs: Vec<[f64; 2]>| {
+        let in_time = |pairs: Vec<Point>| {
             let duration = self.duration();
             (pairs.into_iter()).map(move |[lambda, fraction]| [duration * lambda, fraction])
         };

@@ -49,7 +49,7 @@ pub fn healthy() -> FakeSolver<fn(&WindowSolve) -> Option<Fault>> {
 fn the_forces_are_the_gradient_of_the_energy() {
     let (solver, h) = (healthy(), 1e-5);
     let state = [0.3, -0.2, 0.7];
-    let forces = solver.sample(1.0, state.into()).forces().to_array();
+    let forces = solver.sample(1.0, state.into()).forces();
     for (i, force) in forces.into_iter().enumerate() {
         let w = |step: f64| {
             let mut moved = state;

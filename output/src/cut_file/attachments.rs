@@ -9,7 +9,7 @@ use design::sheet::{
     attachment::{Clearance, Obstacle},
     cut_sheet::{AttachmentPoint, Sheet},
 };
-use support::Fault;
+use support::{Fault, Point};
 
 /// Half the length of the arms of a mark (mm).
 const ARM: f64 = 2.0;
@@ -22,11 +22,11 @@ pub struct PlacedAttachment {
     /// Index of the panel.
     pub panel: usize,
     /// Its position (mm).
-    pub at: [f64; 2],
+    pub at: Point,
     /// Diameter of the finished hole (mm).
     pub hole: Option<f64>,
     /// The ends of a clip on an edge of the panel (mm).
-    pub clip: Option<[[f64; 2]; 2]>,
+    pub clip: Option<[Point; 2]>,
 }
 
 impl PlacedAttachment {

@@ -6,6 +6,7 @@ use design::geometry::{
     region::Ring,
 };
 use serde::{Deserialize, Serialize};
+use support::Point;
 
 /// The tool or the purpose of a shape, in the order of cutting: what is cut later holds what is cut
 /// before.
@@ -89,7 +90,7 @@ impl CutDrawing {
     }
 
     /// Adds a cross with arms of the given length (mm).
-    pub(crate) fn add_cross(&mut self, layer: Layer, at: [f64; 2], arm: f64) {
+    pub(crate) fn add_cross(&mut self, layer: Layer, at: Point, arm: f64) {
         self.shapes.extend(Shape::cross(at, arm).map(|line| (layer, line)));
     }
 
@@ -122,7 +123,7 @@ impl CutDrawing {
     }
 
     /// The lower left and the upper right corner of all shapes (mm).
-    pub fn bounds(&self) -> [[f64; 2]; 2] {
+    pub fn bounds(&self) -> [Point; 2] {
         Shape::extent(self.shapes.iter().map(|(_, shape)| shape))
     }
 
@@ -139,7 +140,7 @@ impl CutDrawing {
     }
 
     /// Shifts all shapes (mm).
-    pub fn shift(&mut self, by: [f64; 2]) {
+    pub fn shift(&mut self, by: Point) {
         for (_, shape) in &mut self.shapes {
             shape.shift(by);
         }

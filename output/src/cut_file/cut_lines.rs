@@ -38,7 +38,7 @@ use design::{
 };
 use scene::{CuttingConfig, Scene};
 use std::collections::BTreeMap;
-use support::{Fault, ensure};
+use support::{Fault, Point, ensure};
 
 /// The least 1 + cos of the turn of an outline at a corner that moves in full with its edges.
 const SHARPEST: f64 = 0.1;
@@ -51,7 +51,7 @@ const METRE: f64 = 1000.0;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Slit {
     /// Its ends (mm); the first is always the tip O of a hinge.
-    pub ends: [[f64; 2]; 2],
+    pub ends: [Point; 2],
     /// The hinge at each end; `None` at an end that is open on the outline.
     pub hinges: [Option<usize>; 2],
 }
@@ -60,7 +60,7 @@ pub struct Slit {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hole {
     /// The tip O of its hinge (mm).
-    pub centre: [f64; 2],
+    pub centre: Point,
     /// Radius of the finished hole: rho_f w_lig (mm).
     pub radius: f64,
 }
@@ -144,8 +144,7 @@ impl CutLines {
         let slits = self.slits.iter().map(|slit| slit.ends);
         let lines: Vec<_> = slits.chain(self.outline_edges()).collect();
         for (panel, of) in sheet.panels.iter().enumerate() {
-            let is_cut =
-                |edge: [[f64; 2]; 2]| lines.iter().any(|line| carries(line, edge, rounding));
+            let is_cut = |edge: [Point; 2]| lines.iter().any(|line| carries(line, edge, rounding));
             // A trimmed panel has another edge where it hangs together with no neighbour.
             let hangs = |side| {
                 let other = sheet.topology.beyond(panel, side);
@@ -231,7 +230,7 @@ impl CutLines {
 
     /// The path of the tool along a slit: with the over-run at an end that is open on the outline
     /// (mm).
-    pub fn tool_slit(&self, slit: &Slit) -> [[f64; 2]; 2] {
+    pub fn tool_slit(&self, slit: &Slit) -> [Point; 2] {
         let [from, to] = slit.ends;
         match slit.hinges[1] {
             Some(_) => slit.ends,
@@ -261,7 +260,7 @@ impl CutLines {
     }
 
     /// The edges of the outlines.
-    fn outline_edges(&self) -> impl Iterator<Item = [[f64; 2]; 2]> {
+    fn outline_edges(&self) -> impl Iterator<Item = [Point; 2]> {
         self.outlines.iter().flat_map(|outline| edges(outline)).map(|(p, q)| [p, q])
     }
 
@@ -286,7 +285,7 @@ impl CutLines {
 }
 
 /// A contour moved outwards by a distance (mm).
-fn moved_outwards(outline: &[[f64; 2]], off: f64) -> Ring {
+fn moved_outwards(outline: &[Point], off: f64) -> Ring {
     let count = outline.len();
     let outward = |k: usize| {
         let (p, q) = (outline[k % count], outline[(k + 1) % count]);
@@ -304,7 +303,7 @@ fn moved_outwards(outline: &[[f64; 2]], off: f64) -> Ring {
 }
 
 /// Whether an edge lies along a line, at least in part, but for a rounding (mm).
-fn carries(line: &[[f64; 2]; 2], edge: [[f64; 2]; 2], rounding: f64) -> bool {
+fn carries(line: &[Point; 2], edge: [Point; 2], rounding: f64) -> bool {
     let [a, b] = *line;
     edge.iter().all(|end| (side((a, b), *end) / distance(a, b)).abs() < rounding)
         && distance_between_segments(*line, edge) < rounding

@@ -9,6 +9,7 @@ use crate::{
     display::Shape,
 };
 use design::geometry::polygon::distance;
+use support::Point;
 
 /// Maximum number of cuts in a run that is reversed: it bounds the time of a sweep over large
 /// sheets.
@@ -19,7 +20,7 @@ const GAIN: f64 = 1e-6;
 impl CutDrawing {
     /// The shapes in cutting order, from a tool at `home`. The travel within a layer is at most the
     /// travel in the present order.
-    pub fn in_cutting_order(&self, home: [f64; 2]) -> Self {
+    pub fn in_cutting_order(&self, home: Point) -> Self {
         let mut at = home;
         let mut ordered = Self::default();
         for layer in Layer::all() {
@@ -38,7 +39,7 @@ impl CutDrawing {
 
     /// Length of the moves between the cuts, from a tool at `home` to the beginning of the last cut
     /// (mm).
-    pub fn idle_travel(&self, home: [f64; 2]) -> f64 {
+    pub fn idle_travel(&self, home: Point) -> f64 {
         let mut at = home;
         let moves = self.cuts().map(|shape| {
             let [begin, end] = shape.ends();
@@ -50,8 +51,8 @@ impl CutDrawing {
 
 impl Shape {
     /// Begins a polygon or a contour at its corner nearest to a point.
-    fn begin_near(&mut self, point: [f64; 2]) {
-        let nearest = |count: usize, at: &dyn Fn(usize) -> [f64; 2]| {
+    fn begin_near(&mut self, point: Point) {
+        let nearest = |count: usize, at: &dyn Fn(usize) -> Point| {
             let off = |i: usize| distance(at(i), point);
             let nearest = (0..count).min_by(|&i, &j| off(i).total_cmp(&off(j)));
             nearest.unwrap_or_default()
@@ -70,7 +71,7 @@ impl Shape {
     }
 
     /// The shape cut in the direction in which it begins at `ends[0]`.
-    fn along(&self, ends: [[f64; 2]; 2]) -> Self {
+    fn along(&self, ends: [Point; 2]) -> Self {
         match self {
             Self::Line(_) => Self::Line(ends),
             other => other.clone(),
@@ -79,9 +80,9 @@ impl Shape {
 }
 
 /// A cut of a tour: its index and its ends in the direction of cutting.
-type Leg = (usize, [[f64; 2]; 2]);
+type Leg = (usize, [Point; 2]);
 
-fn tour(shapes: &[Shape], from: [f64; 2]) -> Vec<Shape> {
+fn tour(shapes: &[Shape], from: Point) -> Vec<Shape> {
     let given: Vec<Leg> = shapes.iter().map(Shape::ends).enumerate().collect();
     let nearest = nearest_neighbours(&given, from);
     let mut tour = if travel(&nearest, from) < travel(&given, from) { nearest } else { given };
@@ -90,13 +91,13 @@ fn tour(shapes: &[Shape], from: [f64; 2]) -> Vec<Shape> {
     legs.map(|(i, ends)| shapes[i].along(ends)).collect()
 }
 
-fn travel(tour: &[Leg], from: [f64; 2]) -> f64 {
+fn travel(tour: &[Leg], from: Point) -> f64 {
     let begins = tour.iter().map(|(_, [begin, _])| *begin);
     let ends = std::iter::once(from).chain(tour.iter().map(|(_, [_, end])| *end));
     ends.zip(begins).map(|(p, q)| distance(p, q)).sum()
 }
 
-fn nearest_neighbours(legs: &[Leg], from: [f64; 2]) -> Vec<Leg> {
+fn nearest_neighbours(legs: &[Leg], from: Point) -> Vec<Leg> {
     let mut left = legs.to_vec();
     let mut at = from;
     let mut tour = Vec::with_capacity(legs.len());
@@ -111,7 +112,7 @@ fn nearest_neighbours(legs: &[Leg], from: [f64; 2]) -> Vec<Leg> {
     tour
 }
 
-fn two_opt(tour: &mut [Leg], from: [f64; 2]) {
+fn two_opt(tour: &mut [Leg], from: Point) {
     let mut shorter = true;
     while std::mem::take(&mut shorter) {
         for i in 0..tour.len() {

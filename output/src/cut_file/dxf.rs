@@ -12,7 +12,7 @@ use crate::{
 use design::geometry::polygon::size;
 use scene::drawing::bulged::Vertex;
 use std::{collections::HashMap, fmt::Display};
-use support::add_line;
+use support::{Point, add_line};
 
 const TEMPLATE: &str = include_str!("dxf.txt");
 
@@ -78,13 +78,13 @@ impl Pairs {
     }
 
     /// x and y of a point, x with the given code.
-    fn ordinates(&mut self, code: u16, [x, y]: [f64; 2]) {
+    fn ordinates(&mut self, code: u16, [x, y]: Point) {
         self.pair(code, x);
         self.pair(code + 10, y);
     }
 
     /// The coordinates of a point, x with the given code.
-    fn point(&mut self, code: u16, at: [f64; 2]) {
+    fn point(&mut self, code: u16, at: Point) {
         self.ordinates(code, at);
         self.pair(code + 20, 0);
     }

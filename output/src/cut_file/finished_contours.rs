@@ -16,6 +16,7 @@ use design::geometry::{
 };
 use scene::drawing::bulged::Vertex;
 use std::f64::consts::PI;
+use support::Point;
 
 impl CutLines {
     /// Adds the contours that a tool of the given kerf (mm) follows with its centre, half of that
@@ -50,9 +51,9 @@ impl CutLines {
 
 /// The hole at the end of a slit.
 struct SlitEnd {
-    at: [f64; 2],
+    at: Point,
     /// Another point of the slit's line.
-    towards: [f64; 2],
+    towards: Point,
     radius: f64,
     half_width: f64,
 }
@@ -78,7 +79,7 @@ impl SlitEnd {
 
     /// Where the flanks cross the line through `p` and `q`, in the order of a walk around the
     /// sheet.
-    fn on_edge(&self, [p, q]: [[f64; 2]; 2]) -> [[f64; 2]; 2] {
+    fn on_edge(&self, [p, q]: [Point; 2]) -> [Point; 2] {
         let [angle, _] = self.mouth();
         let (sin, cos) = angle.sin_cos();
         let edge = [q[0] - p[0], q[1] - p[1]];
@@ -97,11 +98,11 @@ impl SlitEnd {
 /// The outlines of a sheet with a notch for each open slit.
 fn notched(outlines: &[Ring], open: &[SlitEnd]) -> Vec<Vec<Vertex>> {
     let all = outlines.iter().flat_map(|outline| edges(outline));
-    let sides: Vec<[[f64; 2]; 2]> = all.map(|(p, q)| [p, q]).collect();
+    let sides: Vec<[Point; 2]> = all.map(|(p, q)| [p, q]).collect();
     let mut notches: Vec<Vec<(f64, [Vertex; 5])>> = vec![Vec::new(); sides.len()];
     for end in open {
         // The side on which the slit ends.
-        let off = |&[p, q]: &[[f64; 2]; 2]| distance_to_segment(end.towards, p, q);
+        let off = |&[p, q]: &[Point; 2]| distance_to_segment(end.towards, p, q);
         let nearest = (0..sides.len()).min_by(|&i, &j| off(&sides[i]).total_cmp(&off(&sides[j])));
         let at = nearest.expect("an outline has sides");
         let [first, second] = end.on_edge(sides[at]);

@@ -7,12 +7,12 @@ use design::geometry::{
     polygon::{distance_between_segments, distance_to_outline},
     region::Ring,
 };
-use support::{Fault, ensure};
+use support::{Fault, Point, ensure};
 
 /// A cut with the width of the tool: the points nearer than `radius` to the segment `ends`, which
 /// is a point for a hole.
 pub(super) struct Cut {
-    pub ends: [[f64; 2]; 2],
+    pub ends: [Point; 2],
     pub radius: f64,
     /// The hinges at its ends.
     pub hinges: Vec<usize>,

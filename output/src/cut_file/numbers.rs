@@ -11,6 +11,8 @@ use design::{
     geometry::polygon::{contains, distance_to_outline},
     sheet::cut_sheet::Sheet,
 };
+use std::iter::zip;
+use support::Point;
 
 /// Height of panel numbers relative to the root of the panel's area, and its maximum (mm).
 const PANEL_HEIGHT: f64 = 0.1;
@@ -34,7 +36,7 @@ const HEIGHTS: [f64; 6] = [1.0, 0.7, 0.5, 0.35, 0.25, 0.15];
 pub(super) fn numbers(cuts: &CutLines, sheet: &Sheet) -> (Vec<Text>, Vec<Text>) {
     let mut panels: Vec<Taken> =
         (0..sheet.panels.len()).map(|k| Taken::new(cuts, sheet, k)).collect();
-    let of_panels = std::iter::zip(0.., &sheet.panels).map(|(k, panel)| {
+    let of_panels = zip(0.., &sheet.panels).map(|(k, panel)| {
         let ([x, y], side) = (panel.centroid, panel.area.sqrt());
         let height = f64::min(PANEL_HEIGHT * side, MAX_HEIGHT);
         let places = || PLACES.iter().flat_map(|u| PLACES.map(|v| [x + side * u, y + side * v]));
@@ -44,10 +46,10 @@ pub(super) fn numbers(cuts: &CutLines, sheet: &Sheet) -> (Vec<Text>, Vec<Text>) 
         widest(texts, |text| panels[k].clearance(text))
     });
     let of_panels: Vec<Text> = of_panels.collect();
-    for (taken, text) in std::iter::zip(&mut panels, &of_panels) {
+    for (taken, text) in zip(&mut panels, &of_panels) {
         taken.texts.push(text.corners());
     }
-    let of_hinges = std::iter::zip(0.., &sheet.hinges).map(|(number, hinge)| {
+    let of_hinges = zip(0.., &sheet.hinges).map(|(number, hinge)| {
         let sides = [hinge.panel_b(), hinge.panel_a()];
         let candidates = HEIGHTS.iter().flat_map(|scale| {
             let room = sides.map(|k| PANEL_HEIGHT * sheet.panels[k].area.sqrt());
@@ -78,18 +80,18 @@ pub(super) fn numbers(cuts: &CutLines, sheet: &Sheet) -> (Vec<Text>, Vec<Text>) 
 
 /// What a number inside a panel has to keep clear of.
 struct Taken {
-    boundary: Vec<[f64; 2]>,
+    boundary: Vec<Point>,
     /// Half the width of the slits along the edges (mm).
     edge: f64,
     /// Centre and radius of the holes at and in the panel (mm).
-    holes: Vec<([f64; 2], f64)>,
+    holes: Vec<(Point, f64)>,
     /// Lower left and upper right corners of the numbers in the panel (mm).
-    texts: Vec<[[f64; 2]; 2]>,
+    texts: Vec<[Point; 2]>,
 }
 
 impl Taken {
     fn new(cuts: &CutLines, sheet: &Sheet, k: usize) -> Self {
-        let hinges = std::iter::zip(&sheet.hinges, &cuts.holes);
+        let hinges = zip(&sheet.hinges, &cuts.holes);
         let holes = hinges
             .filter(|(hinge, _)| hinge.panels().contains(&k))
             .map(|(_, hole)| (hole.centre, hole.radius));
@@ -113,7 +115,7 @@ impl Taken {
             if contains(&self.boundary, corner) { off - self.edge } else { -off }
         });
         // Gap between two rectangles; a point is one without extent.
-        let gap = |[from, to]: [[f64; 2]; 2]| {
+        let gap = |[from, to]: [Point; 2]| {
             let along = [0, 1].map(|axis| f64::max(low[axis] - to[axis], from[axis] - high[axis]));
             if along[0].max(along[1]) < 0.0 {
                 along[0].max(along[1])

@@ -17,6 +17,7 @@ use crate::{
 };
 use design::geometry::polygon::{mean, size};
 use pdf_writer::{Content, Name};
+use support::Point;
 
 /// Width of the lines of the drawing and of the marks around it (mm).
 const LINE: f64 = 0.2;
@@ -92,7 +93,7 @@ fn tile(tiling: &Tiling, row: usize, column: usize, title: &str) -> Content {
 }
 
 /// A dashed line across a tile at the coordinate `at` of an axis, with crosses.
-fn trim_line(canvas: &mut Canvas, [low, high]: [[f64; 2]; 2], axis: usize, at: f64) {
+fn trim_line(canvas: &mut Canvas, [low, high]: [Point; 2], axis: usize, at: f64) {
     let point = |along: f64| match axis {
         0 => [at, along],
         _ => [along, at],
@@ -131,7 +132,7 @@ fn overview(drawing: &CutDrawing, tiling: &Tiling, title: &str, notes: &[String]
     let [width, height] = size([low, high]);
     let scale = f64::min(room[0] / width, room[1] / height);
     let origin = [BORDER - scale * low[0], BORDER + FOOTER - scale * low[1]];
-    let on_page = |[x, y]: [f64; 2]| [origin[0] + scale * x, origin[1] + scale * y];
+    let on_page = |[x, y]: Point| [origin[0] + scale * x, origin[1] + scale * y];
     for (row, column) in (0..rows).flat_map(|row| (0..columns).map(move |column| (row, column))) {
         let corners = tiling.tile(row, column).map(on_page);
         canvas.polygon(&rectangle(corners), Style::stroke([200; 3], THIN));

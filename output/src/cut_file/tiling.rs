@@ -1,7 +1,7 @@
 //! A drawing on pages of paper, which overlap.
 
 use scene::Paper;
-use support::{Fault, ensure};
+use support::{Fault, Point, ensure};
 
 /// Border that printers leave white (mm).
 pub(super) const BORDER: f64 = 10.0;
@@ -20,12 +20,12 @@ pub struct Tiling {
     /// Number of rows and columns.
     pub counts: [usize; 2],
     /// Lower left corner of all tiles (mm).
-    origin: [f64; 2],
+    origin: Point,
 }
 
 impl Tiling {
     /// Tiles for a drawing from `low` to `high` (mm), in the orientation that takes fewer pages.
-    pub fn new(paper: Paper, [low, high]: [[f64; 2]; 2]) -> Result<Self, Fault> {
+    pub fn new(paper: Paper, [low, high]: [Point; 2]) -> Result<Self, Fault> {
         let [width, height] = paper.size();
         let tilings = [[width, height], [height, width]].map(|page| {
             let window = window(page);
@@ -57,7 +57,7 @@ impl Tiling {
     }
 
     /// Lower left and upper right corner of a tile in the drawing (mm); row 0 is at the top.
-    pub fn tile(&self, row: usize, column: usize) -> [[f64; 2]; 2] {
+    pub fn tile(&self, row: usize, column: usize) -> [Point; 2] {
         let window = window(self.page);
         let steps = [column, self.counts[0] - 1 - row];
         let low =

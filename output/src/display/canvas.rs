@@ -7,6 +7,7 @@ use crate::display::{
 use design::geometry::polygon::{distance, size};
 use scene::drawing::bulged::{Vertex, centre};
 use std::fmt::Write;
+use support::Point;
 
 /// Height of the capitals of DejaVu Sans, relative to the size of the font.
 const CAPITALS: f64 = 0.729;
@@ -21,39 +22,39 @@ pub struct Canvas {
 
 impl Canvas {
     /// A white rectangle with the given lower left and upper right corner (mm).
-    pub fn on_white(corners: [[f64; 2]; 2]) -> Self {
+    pub fn on_white(corners: [Point; 2]) -> Self {
         let mut canvas = Self::default();
         canvas.polygon(&rectangle(corners), Style::fill([255; 3]));
         canvas
     }
 
     /// A straight line between two points (mm).
-    pub fn line(&mut self, from: [f64; 2], to: [f64; 2], style: Style) {
+    pub fn line(&mut self, from: Point, to: Point, style: Style) {
         self.shapes.push((style, Shape::Line([from, to])));
     }
 
     /// A cross with arms of a length (mm).
-    pub(crate) fn cross(&mut self, at: [f64; 2], arm: f64, style: Style) {
+    pub(crate) fn cross(&mut self, at: Point, arm: f64, style: Style) {
         self.shapes.extend(Shape::cross(at, arm).map(|line| (style, line)));
     }
 
     /// A circle with its centre and radius in mm.
-    pub fn circle(&mut self, centre: [f64; 2], radius: f64, style: Style) {
+    pub fn circle(&mut self, centre: Point, radius: f64, style: Style) {
         self.shapes.push((style, Shape::Circle { centre, radius }));
     }
 
     /// A closed polygon.
-    pub fn polygon(&mut self, points: &[[f64; 2]], style: Style) {
+    pub fn polygon(&mut self, points: &[Point], style: Style) {
         self.shapes.push((style, Shape::Polygon(points.to_vec())));
     }
 
     /// An open line through points.
-    pub fn polyline(&mut self, points: &[[f64; 2]], style: Style) {
+    pub fn polyline(&mut self, points: &[Point], style: Style) {
         self.shapes.push((style, Shape::Polyline(points.to_vec())));
     }
 
     /// Text in a font of the given size (mm).
-    pub fn text(&mut self, at: [f64; 2], size: f64, anchor: Anchor, style: Style, text: &str) {
+    pub fn text(&mut self, at: Point, size: f64, anchor: Anchor, style: Style, text: &str) {
         let text = Text { at, anchor, height: CAPITALS * size, text: text.to_owned() };
         self.add(style, text);
     }
@@ -68,7 +69,7 @@ impl Canvas {
 
     /// The SVG of the rectangle from `low` to `high` (mm), `width` wide in an SVG unit such as `mm`
     /// or `px`.
-    pub fn svg(&self, corners: [[f64; 2]; 2], width: f64, unit: &str) -> String {
+    pub fn svg(&self, corners: [Point; 2], width: f64, unit: &str) -> String {
         let elements = self.shapes.iter();
         let body: String =
             elements.map(|(style, shape)| element(shape, &attributes(style, shape))).collect();
@@ -77,7 +78,7 @@ impl Canvas {
 }
 
 /// An SVG document of the rectangle from `low` to `high` (mm).
-pub(crate) fn document(corners: [[f64; 2]; 2], width: f64, unit: &str, body: &str) -> String {
+pub(crate) fn document(corners: [Point; 2], width: f64, unit: &str, body: &str) -> String {
     let (size, [low, high]) = (size(corners), corners);
     format!(
         "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n\
@@ -111,7 +112,7 @@ pub(crate) fn group<'a>(
 }
 
 fn element(shape: &Shape, attributes: &str) -> String {
-    let points = |points: &[[f64; 2]]| {
+    let points = |points: &[Point]| {
         let points = points.iter();
         let pairs: Vec<String> =
             points.map(|[x, y]| format!("{},{}", number(*x), number(-y))).collect();
@@ -141,7 +142,7 @@ fn element(shape: &Shape, attributes: &str) -> String {
 
 /// Lines and arcs from vertex to vertex, back to the first.
 fn path_data(vertices: &[Vertex]) -> String {
-    let at = |[x, y]: [f64; 2]| format!("{},{}", number(x), number(-y));
+    let at = |[x, y]: Point| format!("{},{}", number(x), number(-y));
     let mut data = String::new();
     for (i, &(from, bulge)) in vertices.iter().enumerate() {
         let to = vertices[(i + 1) % vertices.len()].0;

@@ -3,23 +3,24 @@
 use design::geometry::polygon::{bounds, distance, edges};
 use scene::drawing::bulged::{Vertex, flattened};
 use std::f64::consts::TAU;
+use support::Point;
 
 /// One shape.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Shape {
     /// A straight line, from its first to its second end.
-    Line([[f64; 2]; 2]),
+    Line([Point; 2]),
     /// An open line through points.
-    Polyline(Vec<[f64; 2]>),
+    Polyline(Vec<Point>),
     /// A circle.
     Circle {
         /// Its centre.
-        centre: [f64; 2],
+        centre: Point,
         /// Its radius.
         radius: f64,
     },
     /// A closed polygon.
-    Polygon(Vec<[f64; 2]>),
+    Polygon(Vec<Point>),
     /// A closed line of segments and arcs.
     Contour(Vec<Vertex>),
     /// A text of one line.
@@ -30,7 +31,7 @@ pub enum Shape {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Text {
     /// The point to which `anchor` refers (mm).
-    pub at: [f64; 2],
+    pub at: Point,
     /// The point of the text that is at `at`.
     pub anchor: Anchor,
     /// Height of the capitals (mm).
@@ -56,17 +57,17 @@ const CHARACTER: f64 = 0.9;
 
 impl Text {
     /// A text that begins at the point `at`.
-    pub fn line(at: [f64; 2], height: f64, text: &str) -> Self {
+    pub fn line(at: Point, height: f64, text: &str) -> Self {
         Self { at, anchor: Anchor::Start, height, text: text.to_owned() }
     }
 
     /// A text around the point `at`.
-    pub fn centred(at: [f64; 2], height: f64, text: String) -> Self {
+    pub fn centred(at: Point, height: f64, text: String) -> Self {
         Self { at, anchor: Anchor::Centre, height, text }
     }
 
     /// The anchor's place on the baseline (mm).
-    pub(crate) fn baseline(&self) -> [f64; 2] {
+    pub(crate) fn baseline(&self) -> Point {
         let [x, y] = self.at;
         match self.anchor {
             Anchor::Start | Anchor::Middle => [x, y],
@@ -81,7 +82,7 @@ impl Text {
     }
 
     /// The lower left and the upper right corner of the text (mm).
-    pub fn corners(&self) -> [[f64; 2]; 2] {
+    pub fn corners(&self) -> [Point; 2] {
         let ([x, y], [width, height]) = (self.baseline(), self.size());
         let left = match self.anchor {
             Anchor::Start => x,
@@ -93,14 +94,14 @@ impl Text {
 
 impl Shape {
     /// A cross with arms of a length (mm).
-    pub(crate) fn cross([x, y]: [f64; 2], arm: f64) -> [Self; 2] {
+    pub(crate) fn cross([x, y]: Point, arm: f64) -> [Self; 2] {
         [[[x - arm, y], [x + arm, y]], [[x, y - arm], [x, y + arm]]].map(Self::Line)
     }
 
     /// Where a tool begins and ends. A hole begins and ends at its centre, where the tool pierces
     /// the material.
-    pub fn ends(&self) -> [[f64; 2]; 2] {
-        let at = |point: Option<&[f64; 2]>| point.copied().unwrap_or_default();
+    pub fn ends(&self) -> [Point; 2] {
+        let at = |point: Option<&Point>| point.copied().unwrap_or_default();
         match self {
             Self::Line(ends) => *ends,
             Self::Polyline(points) => [at(points.first()), at(points.last())],
@@ -126,7 +127,7 @@ impl Shape {
     }
 
     /// Points with the same bounding box as the shape.
-    fn extremes(&self) -> Vec<[f64; 2]> {
+    fn extremes(&self) -> Vec<Point> {
         match self {
             Self::Line(ends) => ends.to_vec(),
             Self::Circle { centre, radius } => {
@@ -139,13 +140,13 @@ impl Shape {
     }
 
     /// The bounding box of some shapes: its lower left and its upper right corner (mm).
-    pub fn extent<'a>(shapes: impl Iterator<Item = &'a Self>) -> [[f64; 2]; 2] {
+    pub fn extent<'a>(shapes: impl Iterator<Item = &'a Self>) -> [Point; 2] {
         bounds(shapes.flat_map(Self::extremes))
     }
 
     /// Shifts the shape (mm).
-    pub(crate) fn shift(&mut self, by: [f64; 2]) {
-        let shift = |point: &mut [f64; 2]| *point = [point[0] + by[0], point[1] + by[1]];
+    pub(crate) fn shift(&mut self, by: Point) {
+        let shift = |point: &mut Point| *point = [point[0] + by[0], point[1] + by[1]];
         match self {
             Self::Line(ends) => ends.iter_mut().for_each(shift),
             Self::Circle { centre, .. } => shift(centre),
@@ -157,6 +158,6 @@ impl Shape {
 }
 
 /// The corners of a rectangle, counter-clockwise from the lower left.
-pub(crate) fn rectangle([low, high]: [[f64; 2]; 2]) -> [[f64; 2]; 4] {
+pub(crate) fn rectangle([low, high]: [Point; 2]) -> [Point; 4] {
     [low, [high[0], low[1]], high, [low[0], high[1]]]
 }

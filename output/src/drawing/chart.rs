@@ -4,11 +4,12 @@ use crate::{
     display::{Anchor, Canvas, Style, trimmed},
     drawing::page::{INK, MUTED, round_below},
 };
+use support::Point;
 
 /// A rectangle of the page with one value range along x and one along y.
 pub(super) struct Chart {
-    low: [f64; 2],
-    high: [f64; 2],
+    low: Point,
+    high: Point,
     ranges: [[f64; 2]; 2],
 }
 
@@ -17,7 +18,7 @@ impl Chart {
     /// and `high` of the page (mm). `ticks` selects the axes that have ticks.
     pub(super) fn new(
         canvas: &mut Canvas,
-        [low, high]: [[f64; 2]; 2],
+        [low, high]: [Point; 2],
         ranges: [[f64; 2]; 2],
         names: [&str; 2],
         ticks: [bool; 2],
@@ -33,7 +34,7 @@ impl Chart {
                 let mut place = ranges.map(|[from, _]| from);
                 place[i] = value;
                 let [x, y] = chart.at(place);
-                let shifted = |[dx, dy]: [f64; 2]| [x + dx * u, y + dy * u];
+                let shifted = |[dx, dy]: Point| [x + dx * u, y + dy * u];
                 canvas.line([x, y], shifted(end), axis);
                 canvas.text(shifted(label), 12.0 * u, Anchor::Middle, muted, &trimmed(value, 3));
             }

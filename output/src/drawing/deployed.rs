@@ -17,6 +17,7 @@ use design::{
     },
 };
 use scene::{Scene, design_run::Designed, placement::placed};
+use support::Point;
 
 /// The sheet of a scene in the state that is compared with the target, with the loads there.
 pub fn deployed(scene: &Scene, deployment: &Deployment) -> String {
@@ -41,7 +42,7 @@ pub fn deployment_frames(scene: &Scene, designed: &Designed, most: usize) -> Vec
     let index = kept(all.len(), most);
     let states: Vec<DeployedState> =
         (index.iter()).map(|&i| DeployedState::new(scene, &deployment.sheet, all[i])).collect();
-    let extent: Vec<[f64; 2]> = states.iter().flat_map(DeployedState::extent).collect();
+    let extent: Vec<Point> = states.iter().flat_map(DeployedState::extent).collect();
     let openings = states.iter().flat_map(|state| state.openings_deg.iter().copied());
     let scale = ColourScale::covering(openings);
     let frame = |(&i, state): (&usize, &DeployedState)| {
@@ -76,7 +77,7 @@ impl<'a> DeployedState<'a> {
     }
 
     /// The picture of the state on a page around the points `extent`.
-    fn drawn(&self, extent: Vec<[f64; 2]>, subtitle: &str, scale: &ColourScale) -> String {
+    fn drawn(&self, extent: Vec<Point>, subtitle: &str, scale: &ColourScale) -> String {
         let mut page = Page::around(extent, &self.scene.config.title, subtitle, true);
         let canvas = &mut page.canvas;
         let ghost = canvas.dashed(MUTED, 0.8, 3.0);
@@ -97,7 +98,7 @@ impl<'a> DeployedState<'a> {
     }
 
     /// Points that enclose everything drawn.
-    fn extent(&self) -> Vec<[f64; 2]> {
+    fn extent(&self) -> Vec<Point> {
         let mut points = deployed_boundaries(self.sheet, &self.configuration).concat();
         points.extend(&self.scene.target.points);
         points.extend(load_marks::extent(self.scene, self.sheet, self.step));

@@ -12,6 +12,7 @@ use design::{
 };
 use scene::{Scene, placement::placed};
 use std::f64::consts::PI;
+use support::Point;
 
 /// Half the size of the symbol of a support, in units of the picture, as the lengths below.
 const SUPPORT: f64 = 9.0;
@@ -30,7 +31,7 @@ const REACH: f64 = 0.16;
 
 /// The force (N, N) and the couple (N mm) of the loads on a panel in a state.
 struct PanelLoad {
-    at: [f64; 2],
+    at: Point,
     force: [f64; 2],
     couple: f64,
 }
@@ -63,7 +64,7 @@ impl PanelLoad {
 }
 
 /// Points that enclose arrows and labels (mm).
-pub(super) fn extent(scene: &Scene, sheet: &Sheet, step: &LoadStep) -> Vec<[f64; 2]> {
+pub(super) fn extent(scene: &Scene, sheet: &Sheet, step: &LoadStep) -> Vec<Point> {
     let reach = REACH * sheet.outline.size();
     (PanelLoad::on_panels(scene, sheet, step).iter())
         .map(|load| {
@@ -80,7 +81,7 @@ pub(super) fn draw(canvas: &mut Canvas, scene: &Scene, sheet: &Sheet, step: &Loa
     let loads = PanelLoad::on_panels(scene, sheet, step);
     let largest = loads.iter().map(PanelLoad::size).fold(0.0, f64::max);
     let mut labelled: Vec<String> = Vec::new();
-    let mut label = |canvas: &mut Canvas, key: String, [x, y]: [f64; 2], text: &str| {
+    let mut label = |canvas: &mut Canvas, key: String, [x, y]: Point, text: &str| {
         if !labelled.contains(&key) {
             labelled.push(key);
             let (below, style) = ([x, y - 5.0 * unit], canvas.haloed(ACCENT));
@@ -92,7 +93,7 @@ pub(super) fn draw(canvas: &mut Canvas, scene: &Scene, sheet: &Sheet, step: &Loa
         if load.force != [0.0; 2] {
             let size = load.size();
             let [c, s] = load.force.map(|component| component / size);
-            let at = |[along, aside]: [f64; 2]| {
+            let at = |[along, aside]: Point| {
                 let (along, aside) = (unit * along, unit * aside);
                 [x + along * c - aside * s, y + along * s + aside * c]
             };
@@ -125,19 +126,19 @@ fn supports(canvas: &mut Canvas, scene: &Scene, sheet: &Sheet, step: &LoadStep) 
         let k = support.panel;
         let [x, y] = moved(&sheet.panels[k], placed[k], sheet.panels[k].reference);
         let around =
-            |[a, b]: &[f64; 2]| [x + a * SUPPORT * canvas.unit, y + b * SUPPORT * canvas.unit];
+            |[a, b]: &Point| [x + a * SUPPORT * canvas.unit, y + b * SUPPORT * canvas.unit];
         let corners: Vec<_> = support.symbol.iter().map(around).collect();
         canvas.polygon(&corners, Style::fill(INK));
     }
 }
 
-fn arrow(canvas: &mut Canvas, shaft: &[[f64; 2]], head: [[f64; 2]; 3]) {
+fn arrow(canvas: &mut Canvas, shaft: &[Point], head: [Point; 3]) {
     canvas.polyline(shaft, canvas.stroke(ACCENT, 3.0));
     canvas.polygon(&head, Style::fill(ACCENT));
 }
 
 /// A curved arrow about a point, counter-clockwise for the sense 1, clockwise for -1.
-fn curved_arrow(canvas: &mut Canvas, [x, y]: [f64; 2], sense: f64) {
+fn curved_arrow(canvas: &mut Canvas, [x, y]: Point, sense: f64) {
     // Symmetric about the vertical axis, open at the bottom.
     let [from, to] = [-PI / 2.0 + OPEN, 1.5 * PI - OPEN];
     let at = |radius: f64, angle: f64| {

@@ -15,6 +15,7 @@ use design::{
     geometry::polygon::{bounds, size},
     sheet::{cut_sheet::Sheet, kinematics::deployed_boundaries},
 };
+use support::Point;
 
 /// Magnifications of the residuals.
 const MAGNIFICATIONS: [f64; 8] = [1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0];
@@ -98,14 +99,14 @@ fn residuals(canvas: &mut Canvas, fit: &Fit, factor: f64, panel_size: f64) {
 }
 
 /// The line along the magnified residual of a point, from its prediction.
-fn residual(point: &FittedPoint, factor: f64) -> [[f64; 2]; 2] {
+fn residual(point: &FittedPoint, factor: f64) -> [Point; 2] {
     let ([x, y], [dx, dy]) = (point.predicted, point.residual());
     [[x, y], [x + factor * dx, y + factor * dy]]
 }
 
 /// Draws the openings measured against predicted, with two standard errors and the line of
 /// agreement.
-fn openings(canvas: &mut Canvas, corners: [[f64; 2]; 2], report: &MeasurementReport) {
+fn openings(canvas: &mut Canvas, corners: [Point; 2], report: &MeasurementReport) {
     let bar = |opening: &MeasuredOpening| {
         [-2.0, 2.0].map(|k| opening.measured_deg + k * opening.error_deg)
     };
@@ -136,7 +137,7 @@ fn openings(canvas: &mut Canvas, corners: [[f64; 2]; 2], report: &MeasurementRep
 }
 
 /// Draws the error of every panel centre as a bar, and the floor of the measurement as a line.
-fn centres(canvas: &mut Canvas, corners: [[f64; 2]; 2], report: &MeasurementReport) {
+fn centres(canvas: &mut Canvas, corners: [Point; 2], report: &MeasurementReport) {
     let panels = &report.panels;
     if panels.is_empty() {
         return;

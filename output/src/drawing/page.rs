@@ -9,6 +9,7 @@ use design::{
     },
     sheet::{cut_sheet::Sheet, hinge_window::HingeWindow, topology::Topology},
 };
+use support::Point;
 
 /// Colour of main lines and titles.
 pub const INK: Colour = [31, 41, 51];
@@ -48,10 +49,10 @@ fn fitted(text: &str, size: f64, character: f64, wide: f64) -> (f64, String) {
 pub(crate) struct Page {
     pub canvas: Canvas,
     /// Lower and upper corner of the drawn content, without the margins (mm).
-    low: [f64; 2],
-    high: [f64; 2],
+    low: Point,
+    high: Point,
     /// Lower and upper corner of the page (mm).
-    corners: [[f64; 2]; 2],
+    corners: [Point; 2],
 }
 
 /// Draws the panels of a sheet, which have these boundaries (mm) and lines of this style.
@@ -72,7 +73,7 @@ pub(super) fn windows(
     canvas: &mut Canvas,
     sheet: &Sheet,
     style: impl Fn(usize) -> Style,
-    moved: impl Fn(usize, [f64; 2]) -> [f64; 2],
+    moved: impl Fn(usize, Point) -> Point,
 ) {
     for (h, (hinge, window)) in sheet.hinges.iter().zip(HingeWindow::of_sheet(sheet)).enumerate() {
         for k in hinge.panels() {
@@ -109,7 +110,7 @@ impl Page {
     /// A page around `points`, with space for a title above, a scale bar below and, if requested, a
     /// colour scale at the right.
     pub(crate) fn around(
-        points: impl IntoIterator<Item = [f64; 2]>,
+        points: impl IntoIterator<Item = Point>,
         title: &str,
         subtitle: &str,
         colour_scale: bool,
@@ -145,7 +146,7 @@ impl Page {
     }
 
     /// Draws a scale bar with a round length between a tenth and a quarter of the picture's width.
-    fn scale_bar(&mut self, at: [f64; 2]) {
+    fn scale_bar(&mut self, at: Point) {
         let length = round_below((self.corners[1][0] - self.corners[0][0]) / 4.0);
         let (height, end) = (5.0 * self.canvas.unit, at[0] + length);
         let stroke = self.canvas.stroke(INK, 1.6);

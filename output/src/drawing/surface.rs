@@ -5,6 +5,7 @@ use crate::{
     drawing::page::{ColourScale, INK, Page},
 };
 use design::geometry::polygon::{bounds, size};
+use support::Point;
 
 /// From where a surface is seen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -33,7 +34,7 @@ pub struct Surface<'a> {
 
 impl View {
     /// Position on the picture, and depth: what has more is in front.
-    fn of(self, [x, y, z]: [f64; 3]) -> ([f64; 2], f64) {
+    fn of(self, [x, y, z]: [f64; 3]) -> (Point, f64) {
         match self {
             Self::Above => ([x, y], z),
             Self::Front => ([x, z], -y),
@@ -48,7 +49,7 @@ const LEAST_HEIGHT: f64 = 0.25;
 /// The picture of a surface. What is nearer is drawn over what is further away.
 pub fn surface(surface: &Surface, view: View, title: &str, subtitle: &str) -> String {
     let seen: Vec<_> = surface.points.iter().map(|point| view.of(*point)).collect();
-    let corners: Vec<[f64; 2]> = seen.iter().map(|(at, _)| *at).collect();
+    let corners: Vec<Point> = seen.iter().map(|(at, _)| *at).collect();
     let [low, high] = bounds(corners.iter().copied());
     // A sheet seen from its edge is flat: the colour scale needs a height.
     let [width, height] = size([low, high]);

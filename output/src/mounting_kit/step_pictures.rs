@@ -13,6 +13,7 @@ use design::{
         kinematics::{Configuration, deployed, deployed_boundaries},
     },
 };
+use support::Point;
 
 /// Height of the letters, distance of lines, and width of a letter on the mean (mm).
 const LETTERS: f64 = 2.3;
@@ -40,7 +41,7 @@ pub(super) struct StepPictures<'a> {
     sheet: &'a Sheet,
     mounting: &'a Mounting,
     /// Lower left and upper right corner of all states (mm).
-    extent: [[f64; 2]; 2],
+    extent: [Point; 2],
 }
 
 impl<'a> StepPictures<'a> {
@@ -62,12 +63,12 @@ impl<'a> StepPictures<'a> {
     }
 
     /// Draws a step into a rectangle of a page (mm), its text below its picture.
-    pub(super) fn draw(&self, canvas: &mut Canvas, step: usize, [low, high]: [[f64; 2]; 2]) {
+    pub(super) fn draw(&self, canvas: &mut Canvas, step: usize, [low, high]: [Point; 2]) {
         let room = [high[0] - low[0], high[1] - low[1] - TEXT];
         let [from, to] = self.extent;
         let scale = f64::min(room[0] / (to[0] - from[0]), room[1] / (to[1] - from[1]));
         let [x, y] = [0, 1].map(|axis| 0.5 * (room[axis] - scale * (from[axis] + to[axis])));
-        let place = |at: [f64; 2]| [low[0] + x + scale * at[0], low[1] + TEXT + y + scale * at[1]];
+        let place = |at: Point| [low[0] + x + scale * at[0], low[1] + TEXT + y + scale * at[1]];
         let flat = vec![[0.0; 3]; self.sheet.panels.len()];
         let count = (step + 1).saturating_sub(self.before());
         let put_in = &self.mounting.fasteners[..count];
@@ -106,7 +107,7 @@ impl<'a> StepPictures<'a> {
     }
 
     /// The hole of a fastener in a state of the sheet.
-    fn hole(&self, fastener: &Fastener, state: &Configuration) -> [f64; 2] {
+    fn hole(&self, fastener: &Fastener, state: &Configuration) -> Point {
         let panel = &self.sheet.panels[fastener.panel];
         deployed(panel, state[fastener.panel], panel.reference)
     }
@@ -118,7 +119,7 @@ impl<'a> StepPictures<'a> {
         number: usize,
         fastener: &Fastener,
         is_in: bool,
-        place: impl Fn([f64; 2]) -> [f64; 2],
+        place: impl Fn(Point) -> Point,
     ) {
         let [x, y] = place(fastener.place);
         if is_in {
@@ -134,7 +135,7 @@ impl<'a> StepPictures<'a> {
 }
 
 /// The way of a hole.
-fn arrow(canvas: &mut Canvas, [from, to]: [[f64; 2]; 2]) {
+fn arrow(canvas: &mut Canvas, [from, to]: [Point; 2]) {
     let length = f64::hypot(to[0] - from[0], to[1] - from[1]);
     if length < HEAD[0] {
         return;

@@ -14,7 +14,7 @@ use design::{
     objective::{design_problem::Deployment, scores::Scores},
 };
 use scene::{Posture, Scene, design_run::Designed};
-use support::{Fault, severity::Severity};
+use support::{Fault, Point, severity::Severity};
 
 /// A deployed design.
 pub(super) struct DeployedDesign<'a> {
@@ -133,7 +133,7 @@ pub(crate) fn miss(seen: f64, outline_error: f64, size: [f64; 2]) -> String {
     )
 }
 
-pub(crate) fn extent(points: impl IntoIterator<Item = [f64; 2]>) -> [f64; 2] {
+pub(crate) fn extent(points: impl IntoIterator<Item = Point>) -> Point {
     size(bounds(points))
 }
 

@@ -5,28 +5,29 @@
 use design::geometry::plane::{I, complex, point};
 use faer::c64;
 use std::f64::consts::TAU;
+use support::Point;
 
 /// A vertex (mm) and its bulge.
-pub type Vertex = ([f64; 2], f64);
+pub type Vertex = (Point, f64);
 
 /// Number of segments of a full circle.
 const SEGMENTS: f64 = 128.0;
 
 /// The centre of the arc between two points with a bulge, which is not 0.
-pub fn centre(from: [f64; 2], to: [f64; 2], bulge: f64) -> [f64; 2] {
+pub fn centre(from: Point, to: Point, bulge: f64) -> Point {
     let [from, to] = [from, to].map(complex);
     point(0.5 * (from + to) + I * (to - from) * ((1.0 - bulge * bulge) / (4.0 * bulge)))
 }
 
 /// Points on the arc about a centre from the end of a radius through an angle.
-pub(super) fn arc(centre: c64, radius: c64, angle: f64) -> Vec<[f64; 2]> {
+pub(super) fn arc(centre: c64, radius: c64, angle: f64) -> Vec<Point> {
     let count = (SEGMENTS * angle.abs() / TAU).ceil().max(1.0) as usize;
     let at = |i: usize| point(centre + radius * c64::cis(angle * i as f64 / count as f64));
     (0..=count).map(at).collect()
 }
 
 /// The points of a polyline, with points on its arcs.
-pub fn flattened(vertices: &[Vertex], closed: bool) -> Vec<[f64; 2]> {
+pub fn flattened(vertices: &[Vertex], closed: bool) -> Vec<Point> {
     let mut points = Vec::new();
     for (i, &(from, bulge)) in vertices.iter().enumerate() {
         points.push(from);

@@ -1,7 +1,7 @@
 //! A line in a drawing, and what makes it an outline.
 
 use design::geometry::polygon;
-use support::{Fault, ensure, refuse};
+use support::{Fault, Point, ensure, refuse};
 
 /// Points closer than this fraction of the largest coordinate are merged: usvg rounds to f32.
 pub(super) const WELD: f64 = 1e-6;
@@ -16,7 +16,7 @@ pub(super) const LISTED: usize = 5;
 /// A line of a drawing, flattened to segments.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Contour {
-    pub points: Vec<[f64; 2]>,
+    pub points: Vec<Point>,
     /// Whether its end is connected to its start.
     pub closed: bool,
     /// Whether its inside is filled: viewers close it.
@@ -29,7 +29,7 @@ pub(super) struct Contour {
 
 impl Contour {
     /// The lower left and the upper right corner of its bounding box.
-    pub(super) fn bounds(&self) -> [[f64; 2]; 2] {
+    pub(super) fn bounds(&self) -> [Point; 2] {
         polygon::bounds(self.points.iter().copied())
     }
 
@@ -45,7 +45,7 @@ impl Contour {
 
     /// It with each point once; one that returns to its start is closed.
     pub(super) fn merged(mut self) -> Self {
-        let near = |p: [f64; 2], q: [f64; 2]| polygon::distance(p, q) <= self.rounding;
+        let near = |p: Point, q: Point| polygon::distance(p, q) <= self.rounding;
         let mut last = [f64::NAN; 2];
         self.points.retain(|point| {
             let kept = !near(*point, last);
@@ -109,7 +109,7 @@ impl Contour {
 
 /// A common point of the lines of contours. Coordinates are taken from a point of the last one:
 /// numbers near zero have more digits.
-pub(super) fn crossing(contours: &[&Contour]) -> Option<[f64; 2]> {
+pub(super) fn crossing(contours: &[&Contour]) -> Option<Point> {
     let [x0, y0] = contours.last()?.points[0];
     let near_zero = contours.iter().map(|contour| -> Vec<_> {
         contour.points.iter().map(|[x, y]| [x - x0, y - y0]).collect()
@@ -121,9 +121,9 @@ pub(super) fn crossing(contours: &[&Contour]) -> Option<[f64; 2]> {
 const SEGMENTS: usize = 32;
 
 /// Appends a Bezier curve that starts at the last point, by de Casteljau's algorithm.
-pub(super) fn flatten(points: &mut Vec<[f64; 2]>, controls: &[[f64; 2]]) {
+pub(super) fn flatten(points: &mut Vec<Point>, controls: &[Point]) {
     let start = points.last().copied();
-    let controls: Vec<[f64; 2]> = start.iter().chain(controls).copied().collect();
+    let controls: Vec<Point> = start.iter().chain(controls).copied().collect();
     for i in 1..=SEGMENTS {
         let t = i as f64 / SEGMENTS as f64;
         let mut level = controls.clone();

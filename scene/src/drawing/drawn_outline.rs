@@ -11,7 +11,7 @@ use crate::drawing::{
     svg_path,
 };
 use std::path::{Path, PathBuf};
-use support::{Fault, at, refuse, text_file};
+use support::{Fault, Point, at, refuse, text_file};
 
 /// First bytes of a file that is compressed by gzip.
 const GZIP: &[u8] = b"\x1F\x8B";
@@ -29,9 +29,9 @@ const OTHERS: [(&str, &str); 6] = [
 #[derive(Clone, Debug)]
 pub(crate) struct DrawnOutline {
     /// Its vertices, y upwards.
-    pub vertices: Vec<[f64; 2]>,
+    pub vertices: Vec<Point>,
     /// The vertices of its holes.
-    pub holes: Vec<Vec<[f64; 2]>>,
+    pub holes: Vec<Vec<Point>>,
     /// Length of the line that closes an open path that is filled; 0 for a closed one.
     pub gap: f64,
     /// Whether the vertices are in mm.
@@ -57,7 +57,7 @@ pub(crate) fn of_file(bytes: &[u8], number: Option<usize>) -> Result<DrawnOutlin
 }
 
 /// The number of a piece of a drawing, and its vertices, y upwards.
-pub type NumberedPiece = (usize, Vec<[f64; 2]>);
+pub type NumberedPiece = (usize, Vec<Point>);
 
 /// The pieces of a drawing, the largest first.
 pub fn pieces(bytes: &[u8]) -> Result<Vec<NumberedPiece>, Fault> {
@@ -82,7 +82,7 @@ pub(super) fn of_text(text: &str, number: Option<usize>) -> Result<DrawnOutline,
     let chosen = drawn.chosen(number)?;
     let gap = drawn.contours[chosen].check()?;
     let (holes, left_out) = holes::of(chosen, &drawn.contours, &drawn.around)?;
-    let mut points = |contour: usize| -> Vec<[f64; 2]> {
+    let mut points = |contour: usize| -> Vec<Point> {
         let points = std::mem::take(&mut drawn.contours[contour].points);
         points.into_iter().map(|at| drawn.upright(at)).collect()
     };
@@ -141,7 +141,7 @@ impl Drawn {
     }
 
     /// A point with y upwards.
-    fn upright(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+    fn upright(&self, [x, y]: Point) -> Point {
         [x, if self.downwards { -y } else { y }]
     }
 

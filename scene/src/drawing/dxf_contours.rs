@@ -16,7 +16,7 @@ use design::geometry::{
 };
 use faer::c64;
 use std::{collections::HashMap, f64::consts::TAU, ops::Range};
-use support::{Fault, ensure, refuse};
+use support::{Fault, Point, ensure, refuse};
 
 /// Difference of an angle from a full circle at which it is one, written with few digits (rad).
 const FULL: f64 = 1e-3;
@@ -104,9 +104,9 @@ impl<'a> DxfRecord<'a> {
         self.number(code) as i64 & bit != 0
     }
 
-    fn points(&self, code: i32) -> Vec<[f64; 2]> {
+    fn points(&self, code: i32) -> Vec<Point> {
         let ordinates = self.numbers(code + 10);
-        self.numbers(code).zip(ordinates).map(<[f64; 2]>::from).collect()
+        self.numbers(code).zip(ordinates).map(<Point>::from).collect()
     }
 
     /// The first point of a code.
@@ -234,7 +234,7 @@ fn records(text: &str) -> Result<Vec<DxfRecord<'_>>, Fault> {
 }
 
 /// Points, and whether they are closed.
-type Points = (Vec<[f64; 2]>, bool);
+type Points = (Vec<Point>, bool);
 
 /// What is drawn of a file.
 struct DxfDrawing<'a> {
@@ -342,7 +342,7 @@ fn contour(entity: &DxfRecord, further: &[DxfRecord]) -> Result<Option<Points>, 
             let long = entity.at(11);
             let short = entity.number(40) * long * if below { -I } else { I };
             let on_circle = arc(0.0.into(), c64::cis(from), turned(from, to));
-            let at = |[x, y]: [f64; 2]| point(centre + x * long + y * short);
+            let at = |[x, y]: Point| point(centre + x * long + y * short);
             (on_circle.into_iter().map(at).collect(), false)
         }
         "LWPOLYLINE" => {
@@ -384,7 +384,7 @@ fn turned(from: f64, to: f64) -> f64 {
 }
 
 /// Points on a B-spline or on a spline through points.
-fn spline_points(entity: &DxfRecord) -> Result<Vec<[f64; 2]>, Fault> {
+fn spline_points(entity: &DxfRecord) -> Result<Vec<Point>, Fault> {
     let degree = entity.number(71) as usize;
     let knots: Vec<f64> = entity.numbers(40).collect();
     let points = entity.points(10);

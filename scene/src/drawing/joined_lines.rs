@@ -4,6 +4,7 @@
 use crate::drawing::contour::Contour;
 use design::geometry::polygon;
 use std::collections::{HashMap, HashSet};
+use support::Point;
 
 /// Distance of two ends that meet, over the size of the drawing.
 const JOINED: f64 = 1e-5;
@@ -104,15 +105,15 @@ fn chains(open: &[Contour], whole: &[Contour], nodes: &mut Nodes) -> Vec<Contour
 
 /// Points, those as one that are nearer to each other than a distance.
 struct Nodes {
-    low: [f64; 2],
+    low: Point,
     within: f64,
-    points: Vec<[f64; 2]>,
+    points: Vec<Point>,
     /// The point in a square of a grid.
     cells: HashMap<[i64; 2], usize>,
 }
 
 impl Nodes {
-    fn node(&mut self, point: [f64; 2]) -> usize {
+    fn node(&mut self, point: Point) -> usize {
         let [x, y] = [0, 1].map(|c| ((point[c] - self.low[c]) / self.within).floor() as i64);
         let around = [0, -1, 1].into_iter().flat_map(|i| [0, -1, 1].map(|j| [x + i, y + j]));
         let near = |node: &usize| {
@@ -129,7 +130,7 @@ impl Nodes {
 
     /// The lines between pairs of points, from the lower to the higher node; a line of no length is
     /// left out.
-    fn lines(&mut self, pairs: impl Iterator<Item = ([f64; 2], [f64; 2])>) -> Vec<(usize, usize)> {
+    fn lines(&mut self, pairs: impl Iterator<Item = (Point, Point)>) -> Vec<(usize, usize)> {
         let ends = pairs.map(|(p, q)| (self.node(p), self.node(q)));
         let ends = ends.filter(|(a, b)| a != b).map(|(a, b)| (a.min(b), a.max(b)));
         ends.collect()

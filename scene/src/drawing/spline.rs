@@ -3,6 +3,7 @@
 use crate::drawing::contour::flatten;
 use design::geometry::plane::point;
 use faer::c64;
+use support::Point;
 
 /// Number of segments of a spline between two knots.
 const SEGMENTS: usize = 32;
@@ -12,7 +13,7 @@ const SWEEPS: usize = 60;
 /// Points on a cubic spline through points (not repeated): its curvature is continuous, and zero at
 /// open ends, if the parameter is the length of the chords. Its tangents are found by Gauss-Seidel
 /// iterations.
-pub(super) fn through(points: &[c64], closed: bool) -> Vec<[f64; 2]> {
+pub(super) fn through(points: &[c64], closed: bool) -> Vec<Point> {
     let n = points.len();
     let sides = |i: usize| {
         let before = (closed || i > 0).then_some((i + n - 1) % n);
@@ -46,9 +47,9 @@ pub(super) fn through(points: &[c64], closed: bool) -> Vec<[f64; 2]> {
 pub(super) fn b_spline(
     degree: usize,
     knots: &[f64],
-    points: &[[f64; 2]],
+    points: &[Point],
     weights: &[f64],
-) -> Vec<[f64; 2]> {
+) -> Vec<Point> {
     let controls = points.iter().enumerate().map(|(i, [x, y])| {
         let weight = weights.get(i).copied().unwrap_or(1.0);
         [x * weight, y * weight, weight]

@@ -104,7 +104,7 @@ mod tests {
             let term = Fastenings { attachments: vec![attachment.clone()] };
             let all = |x: &[f64]| {
                 let sheet = sheet(x);
-                let at = Deployed { sheet: &sheet, path: &[], outline: &[], fit: None };
+                let at = Deployed { sheet: &sheet, path: &[], outline: &[] };
                 let mut gradient = TermGradient::zeros(&at);
                 let value = term.evaluate(&at, 1.0, &mut gradient);
                 let (by_points, by_widths) = sheet.pullback(&gradient.by_sheet);

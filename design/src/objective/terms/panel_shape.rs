@@ -20,6 +20,7 @@ use crate::{
     objective::term::{Deployed, Term, TermGradient, over_panels},
 };
 use faer::c64;
+use support::Point;
 
 /// Largest rho that is not penalised.
 const WELL_SHAPED: f64 = 4.0;
@@ -47,7 +48,7 @@ impl Term for PanelShape {
 }
 
 /// The mean over the corners of one panel; its gradient is added to `gradient`.
-fn stretched(corners: &[[f64; 2]; 4], gradient: &mut [c64; 4]) -> f64 {
+fn stretched(corners: &[Point; 4], gradient: &mut [c64; 4]) -> f64 {
     let corner = |j: usize| complex(corners[j % 4]);
     let mut value = 0.0;
     for j in 0..4 {
@@ -70,7 +71,7 @@ fn stretched(corners: &[[f64; 2]; 4], gradient: &mut [c64; 4]) -> f64 {
 }
 
 /// The mean over the pairs of corners of one panel; its gradient is added to `gradient`.
-fn crowded(corners: &[[f64; 2]; 4], min_distance: f64, gradient: &mut [c64; 4]) -> f64 {
+fn crowded(corners: &[Point; 4], min_distance: f64, gradient: &mut [c64; 4]) -> f64 {
     let weight = 1.0 / PAIRS.len() as f64;
     let mut value = 0.0;
     for [i, j] in PAIRS {

@@ -15,6 +15,7 @@ use crate::{
     objective::term::{Deployed, Term, TermGradient, over_panels},
 };
 use faer::c64;
+use support::Point;
 
 /// Weight of the barrier relative to d_min^2, and to the area of a square of this side.
 const WEIGHT: f64 = 0.01;
@@ -55,14 +56,14 @@ impl Term for PanelWidth {
 
 /// The minimum distance of a corner from the line of an edge that does not end at it, over all
 /// panels (mm).
-pub fn thinnest_panel(panels: &[[[f64; 2]; 4]]) -> f64 {
+pub fn thinnest_panel(panels: &[[Point; 4]]) -> f64 {
     let widths = panels.iter().flat_map(|panel| PAIRS.map(|pair| distance(panel, pair).0));
     widths.fold(f64::INFINITY, f64::min)
 }
 
 /// The distance of a corner from the line of an edge, the edge, and the vector from its start to
 /// the corner.
-fn distance(panel: &[[f64; 2]; 4], (edge, corner): (usize, usize)) -> (f64, c64, c64) {
+fn distance(panel: &[Point; 4], (edge, corner): (usize, usize)) -> (f64, c64, c64) {
     let [start, end, at] = [edge, (edge + 1) % 4, corner].map(|j| complex(panel[j]));
     let (along, arm) = (end - start, at - start);
     (cross(along, arm) / along.norm(), along, arm)

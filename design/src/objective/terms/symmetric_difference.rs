@@ -35,10 +35,10 @@ impl Term for SymmetricDifference {
     }
 
     fn evaluate(&self, at: &Deployed, weight: f64, gradient: &mut TermGradient) -> f64 {
-        let placed = self.shape.placed(at.outline, at.fit);
+        let placed = self.shape.placed(at.outline);
         let (difference, by_placed) = symmetric_difference(&placed, &self.target);
         let whole = area(&self.target);
-        (self.shape).pullback(at, &placed, &by_placed, weight / whole, gradient);
+        (self.shape).pullback(at, &by_placed, weight / whole, gradient);
         difference / whole
     }
 }
