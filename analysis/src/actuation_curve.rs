@@ -22,7 +22,7 @@ use design::sheet::kinematics::Configuration;
 use serde::Serialize;
 
 /// What moves the sheet.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Mover {
     /// Dead loads, or their prescribed stroke.
     Loads,
@@ -31,7 +31,7 @@ pub enum Mover {
 }
 
 /// Load against displacement along a path.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Debug, PartialEq)]
 pub struct ActuationCurve {
     /// What moves the sheet.
     pub mover: Mover,
@@ -211,7 +211,7 @@ pub struct LoadPeak {
 }
 
 /// A maximum or minimum of the load along a path on which a displacement is prescribed.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Serialize)]
 pub struct LimitPoint {
     /// Whether the load is larger there than on both sides.
     pub is_maximum: bool,

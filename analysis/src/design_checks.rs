@@ -23,7 +23,7 @@ pub struct DesignChecks {
 }
 
 /// A whole sheet by finite elements, compared with the hinge law.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct WholeSheet {
     /// What kept the panels in their plane.
     pub support: Posture,

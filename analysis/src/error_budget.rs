@@ -35,7 +35,7 @@ use strum::VariantArray;
 const MOST_HINGES: usize = 2000;
 
 /// One cause of errors.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Contribution {
     /// What causes the errors.
     pub cause: ErrorCause,
@@ -46,7 +46,7 @@ pub struct Contribution {
 }
 
 /// The error budget of a deployed sheet.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, Serialize)]
 pub struct ErrorBudget {
     /// All causes.
     pub contributions: Vec<Contribution>,

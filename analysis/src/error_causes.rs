@@ -16,15 +16,7 @@ use surrogate::Surrogate;
 
 /// A cause of errors of a deployed sheet, in the order of a budget.
 #[derive(
-    Clone,
-    Copy,
-    Debug,
-    PartialEq,
-    Eq,
-    Serialize,
-    Deserialize,
-    strum::IntoStaticStr,
-    strum::VariantArray,
+    Clone, Copy, Debug, PartialEq, Serialize, Deserialize, strum::IntoStaticStr, strum::VariantArray,
 )]
 #[serde(rename_all = "kebab-case")]
 #[strum(serialize_all = "lowercase")]
@@ -53,7 +45,7 @@ pub enum ErrorCause {
 }
 
 /// Standard deviations of a deployed sheet.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Effect {
     /// Deviations of the panel corners (mm): root mean square and maximum.
     pub corners: [f64; 2],

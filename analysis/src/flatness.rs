@@ -9,7 +9,7 @@ use crate::localisation::elasto_gravity_length;
 use hinge::SheetMaterial;
 
 /// Whether the panels of a sheet stay in their plane.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Flatness {
     /// The corners are within 0.3 % of the sheet and no panel tilts by more than a degree.
     Flat,

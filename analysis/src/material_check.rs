@@ -19,7 +19,7 @@ use serde::Serialize;
 use support::severity::{Finding, Severity};
 
 /// The intended use of a material.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug)]
 pub struct Intended {
     /// Minimum and maximum ligament width (mm).
     pub w_lig: [f64; 2],
@@ -36,7 +36,7 @@ impl Intended {
 }
 
 /// Estimates for one ligament width.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Serialize)]
 pub struct LigamentEstimate {
     /// Ligament width (mm).
     pub w_lig: f64,
@@ -55,7 +55,7 @@ pub struct LigamentEstimate {
 }
 
 /// All estimates and findings.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Debug, Serialize)]
 pub struct MaterialCheck {
     /// Hash of the law.
     pub law_hash: String,

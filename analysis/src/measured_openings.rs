@@ -15,7 +15,7 @@ use std::f64::consts::{PI, TAU};
 use support::Point;
 
 /// A panel with a measured position.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Serialize)]
 pub struct MeasuredPanel {
     /// Number of the panel.
     pub panel: usize,
@@ -34,7 +34,7 @@ pub struct MeasuredPanel {
 }
 
 /// A hinge with a measured opening.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Serialize)]
 pub struct MeasuredOpening {
     /// Index of the hinge.
     pub hinge: usize,

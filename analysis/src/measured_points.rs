@@ -17,7 +17,7 @@ pub struct Mark {
 }
 
 /// A mark and its measured position.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug)]
 pub struct MeasuredPoint {
     /// What was measured.
     pub mark: Mark,

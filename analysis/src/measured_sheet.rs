@@ -8,7 +8,7 @@ use std::collections::HashSet;
 use support::{Fault, fault, refuse};
 
 /// A measured sheet and its path.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct MeasuredSheet {
     /// The state of the path that fits best.
     pub best: Fit,

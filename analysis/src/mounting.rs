@@ -28,7 +28,7 @@ const SAFETY: f64 = 2.0;
 const FLAT: f64 = 0.01;
 
 /// The fasteners of a mounted sheet in the order in which they are put in.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct Mounting {
     /// Up to the first whose hole does not reach its place.
     pub fasteners: Vec<Fastener>,
@@ -44,7 +44,7 @@ pub struct Mounting {
 }
 
 /// The sheet is opened evenly and released.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Serialize)]
 pub struct ByHand {
     /// Mean rotation of the hinges in the opened sheet (rad).
     pub opened: f64,
@@ -55,7 +55,7 @@ pub struct ByHand {
 }
 
 /// A fastener of a mounted sheet.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, Serialize)]
 pub struct Fastener {
     /// Index of its panel.
     pub panel: usize,

@@ -58,7 +58,7 @@ const LEAST: f64 = 1e-3;
 type JointStiffness = [[f64; 6]; 6];
 
 /// How a plate stays in its plane along its path.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Serialize)]
 pub struct Stability {
     /// The least margin.
     pub margin: f64,
@@ -98,7 +98,7 @@ impl Stability {
 }
 
 /// A plate in a state of its path, seen from the side.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Debug, PartialEq)]
 pub struct OutOfPlane {
     /// The factor of its forces at which it leaves the plane, at most [`MOST`].
     pub margin: f64,

@@ -22,7 +22,7 @@ pub const MIN_POINTS: usize = 4;
 const LEAST_SPEED: f64 = 1e-6;
 
 /// A state of the path with the motion that moves it onto the measured points.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct Fit {
     /// Position on the path, in load steps from the flat sheet.
     pub position: f64,

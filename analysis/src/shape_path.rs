@@ -12,7 +12,7 @@ use design::sheet::kinematics::Configuration;
 const IDEAL_STATES: u32 = 40;
 
 /// One state of a sheet on its path.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct PathShape {
     /// zeta; for an ideal deployment the fraction of the opening angle.
     pub load_factor: f64,
@@ -21,7 +21,7 @@ pub struct PathShape {
 }
 
 /// A sheet and its shapes, the flat one first.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct ShapePath<'a> {
     /// The flat sheet.
     pub sheet: &'a Sheet,

@@ -16,7 +16,7 @@ use support::{fault, statistics::rms_and_maximum};
 use surrogate::Springback;
 
 /// The residual opening of a sheet.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Debug, Serialize)]
 pub struct ResidualShape {
     /// Rotation of every hinge under load and without (rad).
     pub rotations: Vec<[f64; 2]>,

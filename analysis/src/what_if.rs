@@ -19,7 +19,7 @@ const WIDTH: f64 = 0.1;
 const HOLE: f64 = 0.5;
 
 /// A sheet with one thing changed.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Debug, Serialize)]
 pub struct WhatIf {
     /// What is changed.
     pub change: String,
@@ -28,7 +28,7 @@ pub struct WhatIf {
 }
 
 /// The end of a sheet with one thing changed.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Serialize)]
 pub struct ChangedSheet {
     /// How much of the target is seen, from 0 to 1.
     pub seen: f64,

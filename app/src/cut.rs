@@ -172,7 +172,7 @@ impl Display for Written {
 }
 
 /// The answer of a service to a sheet.
-#[derive(Clone, Serialize)]
+#[derive(Serialize)]
 pub struct Verdict {
     name: String,
     source: String,

@@ -13,7 +13,7 @@ const WORK: f64 = 0.2;
 const LEAK: &str = "a geometry of the test or validation part occurs in the training part";
 
 /// Something that makes a database unfit for training.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[derive(Debug, PartialEq, thiserror::Error)]
 #[error("{what} ({count} times, for example job {job})")]
 pub struct Defect {
     /// What is wrong, in one sentence.

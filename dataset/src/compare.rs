@@ -40,7 +40,7 @@ impl<'a> ComparedRay<'a> {
 }
 
 /// A state in both databases. Quantities unknown in one of them are NaN and are not counted.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug)]
 pub struct ComparedState {
     /// Values in the compared database, in the order of [`COMPARED`].
     pub value: [f64; 6],

@@ -165,7 +165,7 @@ fn read_bytes(path: &Path) -> Result<Vec<u8>, Fault> {
 // domain and split are computed at the end.
 
 /// A database that was written while its rays arrived.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct Collected {
     manifest: Manifest,
     contents: Contents,

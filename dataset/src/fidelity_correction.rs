@@ -54,7 +54,7 @@ impl Database {
 const CORRECTED: [usize; 3] = [0, 4, 5];
 
 /// Leave-one-out validation of the correction; see [`left_out`].
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct LeftOut {
     /// The states of each ray, corrected by the other rays.
     pub states: Vec<Vec<ComparedState>>,

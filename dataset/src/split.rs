@@ -37,7 +37,7 @@ impl Default for SplitPlan {
 }
 
 /// A part of the database.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug)]
 pub enum Subset {
     /// Fits the weights.
     Training,

@@ -11,7 +11,7 @@ use std::fmt;
 use support::table::Table;
 
 /// What a summary states of the rows beyond the manifest.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub(crate) struct Contents {
     /// The minimum and the maximum of every column; infinite without a number.
     ranges: [[f64; 2]; COLUMNS.len()],

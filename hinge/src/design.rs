@@ -56,7 +56,7 @@ impl HingeConstants {
 }
 
 /// A hinge design that cannot be cut, with the inequality it violates.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, Debug, thiserror::Error)]
 #[allow(missing_docs, reason = "the message of a variant is its documentation")]
 pub enum InvalidDesign {
     #[error(

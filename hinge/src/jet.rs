@@ -5,7 +5,7 @@ use std::array::from_fn;
 use std::ops::{Add, Mul, Sub};
 
 /// A number, its gradient and its Hessian in (a, s, theta, w_lig, rho_f).
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug)]
 pub struct Jet {
     /// The number.
     pub value: f64,

@@ -16,7 +16,7 @@
 use crate::{HingeDeformation, HingeDesign, HingeSample, Jet};
 
 /// The map from a hinge to that with the hole of reference and the same net ligament.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug)]
 pub struct NetLigament {
     /// w' / w_lig.
     ratio: f64,

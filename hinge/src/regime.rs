@@ -1,7 +1,7 @@
 //! How a ligament deforms as its hinge opens: by its width over the thickness of the sheet.
 
 /// The two ways in which a ligament deforms. A learned energy holds in one of them.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, strum::Display)]
+#[derive(Clone, Copy, Debug, PartialEq, strum::Display)]
 #[strum(serialize_all = "kebab-case")]
 pub enum Regime {
     /// Wide ligaments buckle out of the plane and fold.

@@ -9,7 +9,7 @@ use std::array::from_fn;
 /// ```text
 /// E(x) = (x - r) . K (x - r) / 2,        x = (a, s, theta)
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug)]
 pub struct ReleasedHinge {
     /// r: the deformation without forces (mm, mm, rad).
     pub rest: HingeDeformation,

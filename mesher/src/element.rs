@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 use std::iter::zip;
 
 /// An element type of the window, extruded from a face of the plane mesh.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ElementKind {
     /// C3D20R, extruded from an 8-node quadrilateral.

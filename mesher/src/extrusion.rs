@@ -3,7 +3,7 @@
 use crate::{ElementKind, PlaneMesh};
 
 /// Solid elements above the faces of a plane mesh; indices count from 0.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub(crate) struct Extrusion {
     /// Node positions (mm).
     pub nodes: Vec<[f64; 3]>,
@@ -49,7 +49,7 @@ impl Extrusion {
 
 /// Numbering of the extruded nodes, level by level from the bottom. Even levels contain every plane
 /// node; odd levels, in the middle of the layers, contain only the corner nodes.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub(crate) struct NodeLevels {
     /// Level and plane node of each extruded node.
     nodes: Vec<(usize, usize)>,

@@ -137,7 +137,7 @@ const MAX_ASPECT: f64 = 40.0;
 pub(crate) const MAX_AREA_ERROR: f64 = 0.01;
 
 /// Quality measures of a mesh that passed the checks.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug)]
 pub struct MeshQuality {
     /// Minimum over all elements of the ratio of the smallest to the largest Jacobian determinant
     /// at the Gauss points of an element; in (0, 1].

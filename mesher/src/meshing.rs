@@ -162,7 +162,7 @@ fn version(printed: &str) -> Option<&str> {
 const LIMIT: Duration = Duration::from_secs(60);
 
 /// The gmsh program.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct Gmsh(pub Tool);
 
 impl Gmsh {

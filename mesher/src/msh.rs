@@ -32,7 +32,7 @@ impl Boundary {
 }
 
 /// A second-order mesh of a window or a sheet in its plane; indices count from 0.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default)]
 pub struct PlaneMesh {
     /// Node positions (mm); the positions of a window are in the hinge frame.
     pub nodes: Vec<[f64; 2]>,

@@ -16,7 +16,7 @@ const ON_EDGE: f64 = 1e-6;
 const AT_LIGAMENT: f64 = 2.0;
 
 /// What a face or an element of a sheet belongs to.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum MeshPart {
     /// The part of a panel outside of all windows.
     Panel(usize),
@@ -25,7 +25,7 @@ pub enum MeshPart {
 }
 
 /// A sheet of solid elements; indices count from 0.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct SheetMesh {
     /// The plane mesh that was extruded.
     pub plane: PlaneMesh,

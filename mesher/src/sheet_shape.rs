@@ -16,7 +16,7 @@ const IN_PLANE: f64 = 2.0;
 const ARC_PIECES: usize = 12;
 
 /// How panels are modelled outside of the windows.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Panels {
     /// Rigid bodies that hold the arcs of their windows: only windows are meshed.

@@ -9,7 +9,7 @@ use std::f64::consts::PI;
 use support::Point;
 
 /// The two panels of a hinge: A on the -x side of the main cut, B on the +x side.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug)]
 pub enum Side {
     /// Panel A, on the -x side of the main cut.
     A,

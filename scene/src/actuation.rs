@@ -39,7 +39,7 @@ pub struct SupportConfig {
 }
 
 /// Which motions of a point of a panel a support prescribes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum SupportKind {
     /// Both translations and the rotation.
@@ -67,7 +67,7 @@ pub enum At {
 }
 
 /// A point of a panel that moves with its cuts.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum NamedPoint {
     /// The centroid of the panel.
@@ -123,7 +123,7 @@ pub struct EdgeLoadConfig {
 }
 
 /// An edge of the outline.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum SheetEdge {
     /// The edge from the south-west to the south-east corner.

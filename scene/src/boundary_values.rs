@@ -19,7 +19,7 @@ use std::collections::BTreeMap;
 use support::Point;
 
 /// Supports and loads at full load.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Debug, Serialize)]
 pub struct Actuation {
     /// In the order of the scene.
     pub supports: Vec<SupportedPanel>,
@@ -33,7 +33,7 @@ pub struct Actuation {
 }
 
 /// A supported panel.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Debug, Serialize)]
 pub struct SupportedPanel {
     /// Kind and panel.
     pub name: String,
@@ -48,7 +48,7 @@ pub struct SupportedPanel {
 }
 
 /// A load on one or several panels.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Debug, Serialize)]
 pub struct AppliedLoad {
     /// What is loaded.
     pub name: String,

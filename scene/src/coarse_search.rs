@@ -5,7 +5,7 @@ use design::optimise::outer_loop::StepRecord;
 use serde::{Deserialize, Serialize};
 
 /// The difference of two levels of one sheet, in the state that is compared with the target.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct LevelDifference {
     /// Distance of the panel corners (mm): root mean square and maximum. Of pins, after the rigid
     /// motion that makes it smallest.
@@ -19,7 +19,7 @@ pub struct LevelDifference {
 }
 
 /// A search at a coarser level, and the difference of its design to the next finer level.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct CoarseSearch {
     /// The level of the search.
     pub level: Level,

@@ -20,7 +20,7 @@ pub struct PostureConfig {
 }
 
 /// What keeps the panels in their plane. In the model all panels stay in it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Posture {
     /// Plates, a frame or a fabric keep every panel flat.

@@ -12,7 +12,7 @@ use std::{path::Path, sync::Arc};
 use support::{Fault, FileError, at, ensure, regular_file, said, sealed_json, whole_file};
 
 /// A hinge at the end of its path by finite elements.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SolvedHinge {
     /// The hinge.
@@ -24,7 +24,7 @@ pub struct SolvedHinge {
 }
 
 /// The hinges of a sheet, in their order; `None` where finite elements found no solution.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SolvedHinges {
     /// One entry a hinge.

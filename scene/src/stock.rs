@@ -8,7 +8,7 @@ use serde::{
 use std::{fmt, ops::RangeInclusive, str::FromStr};
 
 /// A paper: ISO 216 A, or of North America (ANSI A and B).
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Paper {
     /// 148 x 210 mm.

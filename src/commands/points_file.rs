@@ -14,7 +14,7 @@ use support::{
 const COLUMNS: [&str; 7] = ["panel", "corner", "x", "y", "unit", "flat_x_mm", "flat_y_mm"];
 
 /// Unit of measured lengths.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
 enum LengthUnit {
     /// Millimetres.
     Mm,

@@ -9,7 +9,7 @@ use support::{caught_panic, worker_pool::NoThread};
 
 /// The exit codes of every command; besides, 2 stands for a wrong command line and 130 for a second
 /// Ctrl-C.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug)]
 pub enum Exit {
     /// 0: done.
     Done,

@@ -11,7 +11,7 @@ use std::{
 use strum::IntoStaticStr;
 
 /// What an event is about.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, IntoStaticStr)]
+#[derive(Clone, Copy, Debug, PartialEq, IntoStaticStr)]
 #[strum(serialize_all = "kebab-case")]
 pub enum Kind {
     /// The materials with weights, the machines, what the keys of a scene mean, and examples.

@@ -5,12 +5,12 @@ use std::fmt::{self, Display};
 
 /// A report. `Display` is for a screen, with aligned columns; [`markdown`](Self::markdown) is for a
 /// page.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Debug, Default)]
 pub struct Document {
     parts: Vec<DocumentBlock>,
 }
 
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Debug)]
 enum DocumentBlock {
     /// A title, with its depth from 1.
     Heading(usize, String),

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 /// What is wrong, after its place (a file, line, key or job) and before what to do, each behind a
 /// colon. An error that a caller matches is a variant of an enum instead.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{0}")]
 pub struct Fault(String);
 

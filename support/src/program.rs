@@ -42,7 +42,7 @@ pub struct ToolKind {
 }
 
 /// A program that was found and has printed its version.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct Tool {
     /// How the program is found.
     pub kind: &'static ToolKind,

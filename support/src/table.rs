@@ -7,7 +7,7 @@ use std::fmt::{self, Display};
 const WIDEST: f64 = 1e7;
 
 /// A cell: what a screen and a page show, and what a CSV file holds.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Debug)]
 pub struct Cell {
     shown: String,
     /// The unrounded number, if it is one; empty if unknown.
@@ -67,7 +67,7 @@ impl Serialize for Cell {
 }
 
 /// A head and rows of as many cells. `Display` is for a screen.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Debug, Default, Serialize)]
 pub struct Table {
     /// The names of the columns; a name of several lines ends with its unit.
     head: Vec<String>,

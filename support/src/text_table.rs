@@ -15,7 +15,7 @@ const SEPARATORS: [u8; 4] = *b";\t, ";
 const GROUPING: [char; 6] = [' ', '\u{a0}', '\u{2009}', '\u{202f}', '\'', '’'];
 
 /// The cells of a text; they are converted to numbers where they are used.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct TextTable {
     /// Every line that is not empty.
     pub rows: Vec<TextRow>,
@@ -24,7 +24,7 @@ pub struct TextTable {
 }
 
 /// One line of a table.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug)]
 pub struct TextRow {
     /// Number of the line in the file, from 1.
     pub line: u64,
@@ -33,7 +33,7 @@ pub struct TextRow {
 }
 
 /// How the numbers of a table are written.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug)]
 pub struct NumberStyle {
     /// Whether the decimal sign is a comma.
     pub comma: bool,

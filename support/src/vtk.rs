@@ -8,7 +8,7 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 
 /// A cell type, by its number in VTK.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum CellKind {
     /// One point.
     Vertex = 1,
@@ -22,7 +22,7 @@ pub enum CellKind {
 }
 
 /// Values with a name, one or more numbers for each point or cell.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct Field {
     /// The name, with the unit if the values have one.
     pub name: &'static str,
@@ -33,7 +33,7 @@ pub struct Field {
 }
 
 /// A grid of cells of one kind.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct UnstructuredGrid {
     /// Positions of the points.
     pub points: Vec<[f64; 3]>,

@@ -13,7 +13,7 @@ use crate::reference_ligament;
 use hinge::{HingeDeformation, HingeDesign, HingeGradient, NetLigament};
 
 /// Damage measures of one hinge and their gradients.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct HingeDamage {
     /// D, the consumed fraction of the ligament's ductility: zero in an undamaged hinge.
     pub d: f64,

@@ -24,7 +24,7 @@ pub struct Surrogate {
 }
 
 /// The networks of a surrogate as in a weight file, each from its first layer to its last.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Debug, PartialEq)]
 pub struct Layers {
     /// The embedding chi.
     pub chi: Vec<DenseLayer>,

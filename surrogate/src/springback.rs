@@ -45,7 +45,7 @@ const TERMS: [usize; 2] = [13, 8];
 const INPUT_OF: [usize; 5] = [0, 2, 4, 1, 3];
 
 /// The law, with its training and its errors.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Springback {
     /// Name of the sheet material.
@@ -78,7 +78,7 @@ pub struct Springback {
 }
 
 /// Errors of the law at a set of hinges.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SpringbackErrors {
     /// Number of hinges.

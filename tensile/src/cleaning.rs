@@ -7,7 +7,7 @@ use support::Point;
 use support::statistics::median;
 
 /// The monotone part of a record.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub(super) struct Cleaned {
     /// [strain, stress (MPa)] with increasing strain.
     pub curve: Vec<Point>,

@@ -26,7 +26,7 @@ pub struct FitOptions {
 }
 
 /// Mean and standard deviation of a quantity over the specimens.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Serialize)]
 pub struct Statistic {
     /// Arithmetic mean.
     pub mean: f64,
@@ -35,7 +35,7 @@ pub struct Statistic {
 }
 
 /// How a row of the table was obtained.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Origin {
     /// From rows at which the strain is uniform.
@@ -47,7 +47,7 @@ pub enum Origin {
 }
 
 /// A row of the hardening curve.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Serialize)]
 pub struct HardeningRow {
     /// True stress (MPa).
     pub stress: f64,
@@ -58,7 +58,7 @@ pub struct HardeningRow {
 }
 
 /// The source of the fracture strain.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum FractureSource {
     /// Given.
@@ -91,7 +91,7 @@ impl FractureSource {
 }
 
 /// The law fitted to the records of one material. Stresses are in MPa.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Debug, Serialize)]
 pub struct MaterialFit {
     /// The specimens.
     pub specimens: Vec<Specimen>,

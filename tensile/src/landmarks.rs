@@ -36,7 +36,7 @@ pub struct Draw {
 }
 
 /// How a specimen ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum SpecimenEnd {
     /// It broke, or the record ends, while its deformation was uniform.

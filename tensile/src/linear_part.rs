@@ -14,7 +14,7 @@ use std::ops::Range;
 use support::Point;
 
 /// The linear part of a curve.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Debug, Serialize)]
 pub struct LinearPart {
     /// Slope (MPa).
     pub young: f64,

@@ -80,7 +80,7 @@ fn monotone(curve: &[Point]) -> Vec<Point> {
 // upper bound for a law that saturates.
 
 /// The local curve of the material in the running neck.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug)]
 pub(super) struct ColdDrawing {
     /// [true stress (MPa), plastic strain] at the upper yield.
     pub from: Point,

@@ -15,7 +15,7 @@ const ENDS: &str =
     "kraft spannung dehnung weg verlangerung breite dicke starke lange width thickness length";
 
 /// The words and units of a name.
-#[derive(Clone, Debug, Default)]
+#[derive(Debug, Default)]
 pub(super) struct Name {
     /// The first words of lines of `WORDS`.
     meanings: Vec<&'static str>,

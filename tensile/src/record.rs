@@ -29,7 +29,7 @@ pub struct RecordOptions {
 }
 
 /// Why a row is not used.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Exclusion {
     /// Unloading and reloading up to the strain before it.
@@ -41,7 +41,7 @@ pub enum Exclusion {
 }
 
 /// One row of a record.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Serialize)]
 pub struct RecordRow {
     /// Number of the line in the file, from 1.
     pub line: u64,
@@ -54,7 +54,7 @@ pub struct RecordRow {
 }
 
 /// The curve of one specimen in the units of the project.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub(super) struct Record {
     /// The file, with the number of the specimen if it has several.
     pub path: PathBuf,
@@ -81,7 +81,7 @@ const MAX_STRAIN_WITHOUT_UNIT: f64 = 1.0;
 const CONTRADICTION: f64 = 0.1;
 const SAME: f64 = 1e-3;
 /// How a column was read. It is printed as one phrase.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Debug, Serialize)]
 pub struct ReadColumn {
     /// What the column contains.
     pub quantity: Quantity,

@@ -32,7 +32,7 @@ pub struct SpecimenOptions {
 }
 
 /// Rows after the maximum of the stress, which the law does not have.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Serialize)]
 pub struct Softening {
     /// Number of rows.
     pub rows: usize,
@@ -41,7 +41,7 @@ pub struct Softening {
 }
 
 /// One evaluated specimen. Stresses are in MPa; strains are from the toe.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Debug, Serialize)]
 pub struct Specimen {
     /// The file, with the number of the specimen if it has several.
     pub path: PathBuf,

@@ -5,7 +5,7 @@ use std::f64::consts::FRAC_PI_2;
 use surrogate::{Standardisation, tanh_in_place};
 
 /// A layer as evaluated: y = x W + b.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub(crate) struct Affine {
     /// (inputs, outputs)
     pub weight: Tensor<2>,
@@ -113,7 +113,7 @@ const ETA_S: usize = 1;
 const ALPHA: usize = 4;
 
 /// How a layer is determined by its trained part.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug)]
 pub(crate) enum Fold {
     /// The inputs are features; half of the columns are trained.
     First,

@@ -12,7 +12,7 @@ use support::statistics::median;
 use surrogate::{DistillationRecord, Surrogate, Teacher};
 
 /// States whose targets are the median predictions of an ensemble.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct Distillation {
     pub(crate) record: DistillationRecord,
     pub(crate) samples: Vec<(HingeDesign, HingeSample)>,

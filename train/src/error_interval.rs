@@ -20,7 +20,7 @@ const QUANTILES: [f64; 2] = [0.025, 0.975];
 const QUANTITIES: usize = 4;
 
 /// A relative root mean square error and its 95 % interval (%).
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Serialize)]
 pub struct ErrorInterval {
     /// The error of all rays.
     pub error: f64,

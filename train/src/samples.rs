@@ -9,7 +9,7 @@ use support::{Fault, fault, refuse, statistics};
 use surrogate::{Card, FEATURE_NAMES, Standardisation, feature_names, features};
 
 /// The scales of (14) and (15), computed from the training rows.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Debug)]
 pub(crate) struct Scales {
     /// Standardisation of the hinges that the networks see; [`NetLigament`].
     pub standardisation: Standardisation,
@@ -33,7 +33,7 @@ pub(crate) struct Scales {
 const FEATURES: usize = FEATURE_NAMES.len();
 
 /// One row: inputs of the networks and targets of (15), both of order one.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug)]
 pub(crate) struct Sample {
     /// Standardised xi(eps, g). The networks see as many of them as the standardisation has.
     pub inputs: [f64; FEATURES],

@@ -26,7 +26,7 @@ use support::{Fault, fault};
 use surrogate::{Card, FORMAT_VERSION, Surrogate, TestErrors, UNITS, feature_names};
 
 /// A trained surrogate with its history and test errors.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct Trained {
     /// The surrogate in which each network is from the epoch of its minimum validation error, or
     /// from the last epoch if that error is unknown.

@@ -12,7 +12,7 @@ use surrogate::{FitError, SpotCheck, Surrogate, TestErrors};
 
 /// Predictions of a surrogate with their targets, the values of the finite elements, one state a
 /// row.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Debug, Default)]
 pub struct Parity {
     /// Targets (`reference`) and predictions (`value`), in the order of the rows. Quantities that
     /// are unknown, or that the surrogate does not predict, are NaN.

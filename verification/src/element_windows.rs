@@ -12,7 +12,7 @@ use support::{Fault, fault};
 use surrogate::Surrogate;
 
 /// A hinge of a sheet that finite elements did not follow along its path.
-#[derive(Clone, Debug, PartialEq, Serialize, thiserror::Error)]
+#[derive(Clone, Debug, Serialize, thiserror::Error)]
 #[error("hinge {hinge}: {reason}")]
 pub struct UnsolvedHinge {
     /// Number of the hinge.

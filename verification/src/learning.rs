@@ -40,7 +40,7 @@ pub struct LearningTask<'a> {
 }
 
 /// Root mean square errors, relative to the root mean square of the quantity (%).
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug)]
 pub struct Accuracy {
     /// Error of W.
     pub energy: f64,
@@ -49,7 +49,7 @@ pub struct Accuracy {
 }
 
 /// One round.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct LearningRound {
     /// Number of rays of all rounds so far.
     pub rays: usize,
@@ -70,7 +70,7 @@ pub struct LearningRound {
 }
 
 /// Why the rounds ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LearningEnd {
     /// The weights of the last round are accurate enough.
     Accurate,

@@ -68,7 +68,7 @@ pub fn collected_windows(rows: &[Row]) -> Vec<CollectedWindow> {
 // Windows on random rays, solved by finite elements, as rows of a database.
 
 /// The states on paths that the solver followed to their end.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Debug, Default)]
 pub struct SpotStates {
     /// One row a state; the rows of a window have one job.
     pub rows: Vec<Row>,

@@ -75,7 +75,7 @@ pub struct SheetCheck {
 }
 
 /// A state of a path. Pairs are by the hinge law and by finite elements.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Debug, Serialize)]
 pub struct StateCheck {
     /// Fraction of the stroke or of the loads.
     pub fraction: f64,
@@ -107,7 +107,7 @@ pub struct StateCheck {
 }
 
 /// A hinge at the end of a path. Pairs are by the hinge law and by finite elements.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Debug, Serialize)]
 pub struct HingeCheck {
     /// Number of the hinge.
     pub hinge: usize,
@@ -122,7 +122,7 @@ pub struct HingeCheck {
 }
 
 /// A panel at the end of a path.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Debug, Serialize)]
 pub struct PanelCheck {
     /// Number of the panel.
     pub panel: usize,

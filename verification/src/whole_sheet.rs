@@ -280,7 +280,7 @@ fn halve(shape: &mut SheetShape) {
 }
 
 /// Estimates from sheets of 13 000 and 51 000 unknowns on one core of a busy machine.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug)]
 pub struct SheetCost {
     /// Unknown displacements.
     pub unknowns: usize,

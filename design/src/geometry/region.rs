@@ -18,14 +18,14 @@ pub type Ring = Vec<Point>;
 
 /// Disjoint polygons. The contours of each are its outline, counter-clockwise, and its holes,
 /// clockwise.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default)]
 pub struct Region {
     /// The contours of each polygon.
     pub polygons: Vec<Vec<Ring>>,
 }
 
 /// How an offset region turns about its corners.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug)]
 pub enum Corners {
     /// In arcs.
     Round,

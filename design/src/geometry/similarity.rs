@@ -14,7 +14,7 @@
 use faer::c64;
 
 /// Whether the scale is a part of the fit.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Scale {
     /// The scale is 1.
     Given,

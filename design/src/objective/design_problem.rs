@@ -120,7 +120,7 @@ pub struct Deployment {
 }
 
 /// The gradient of L with respect to quantities that are constant during the design.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, Serialize)]
 pub struct Sensitivities {
     /// Gradient in the outline's corners, at fixed r and tau.
     pub outline: [Point; 4],

@@ -9,7 +9,7 @@ use crate::{
 use std::iter::zip;
 
 /// A dimensionless measure of the state of a hinge.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug)]
 pub enum HingeMeasure {
     /// eta_a = a / w_lig.
     AxialOpening,

@@ -23,7 +23,7 @@ pub struct Objective {
 }
 
 /// The objective and its partial derivatives at a deployment.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub(crate) struct ObjectiveValue {
     /// L of (16).
     pub loss: f64,

@@ -38,7 +38,7 @@ use std::iter::zip;
 use support::{Point, fault, vectors::dot};
 
 /// Inputs of the equilibrium other than the design; by default the inputs of the problem.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Debug, PartialEq)]
 pub struct Conditions {
     /// (F_x, F_y, M) on every panel at full load (N, N, N mm); `None` for the loads of the problem.
     pub loads: Option<Vec<Motion>>,
@@ -76,7 +76,7 @@ impl Response {
 }
 
 /// The gradient of a function in the outputs of a response.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Debug)]
 pub struct ResponseCotangent {
     /// Gradient in the deployed corners of every panel.
     pub corners: Vec<[Point; 4]>,
@@ -87,7 +87,7 @@ pub struct ResponseCotangent {
 }
 
 /// The gradient of a function of a response in the inputs.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Debug)]
 pub struct ResponseGradient {
     /// Gradient in the design.
     pub design: DesignVector,

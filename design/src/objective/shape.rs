@@ -11,7 +11,7 @@ use crate::{
 use support::Point;
 
 /// The distance of the deployed outline to a target.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct ShapeDistance {
     /// T (mm); not empty.
     pub target: Vec<Point>,

@@ -64,7 +64,7 @@ pub struct Deployed<'a> {
 }
 
 /// The gradient of weighted terms.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Debug)]
 pub struct TermGradient {
     /// Gradient in the deployed positions of P.
     pub by_outline: Vec<Point>,
@@ -98,7 +98,7 @@ pub(crate) fn over_panels(
 }
 
 /// The gradient in the measures of a hinge at a load step.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct MeasureGradient {
     /// Derivative in eta_a.
     pub eta_a: f64,

@@ -9,14 +9,14 @@ use support::vectors::{add, dot};
 const PAIRS: usize = 20;
 
 /// The last steps, newest first.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 #[serde(transparent)]
 pub(crate) struct Memory {
     pairs: VecDeque<CurvaturePair>,
 }
 
 /// A step and the change of the gradient along it.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct CurvaturePair {
     step: Vec<f64>,

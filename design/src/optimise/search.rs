@@ -18,7 +18,7 @@ const RESOLUTION: f64 = 1e-13;
 const LONGEST: f64 = 1.0;
 
 /// The optimiser of the outer loop, as a scene names it.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum SearchMethod {
     /// Adam, as in the paper.
@@ -29,7 +29,7 @@ pub enum SearchMethod {
 }
 
 /// The state of the optimiser: all that a resumed run needs.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum Optimiser {
     Adam(Adam),
@@ -37,7 +37,7 @@ pub(crate) enum Optimiser {
 }
 
 /// The state of L-BFGS.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Lbfgs {
     /// Length per coordinate of a step without curvature memory.
@@ -48,7 +48,7 @@ pub(crate) struct Lbfgs {
 }
 
 /// An evaluated point, and the slope of the loss along the step from it.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct SearchPoint {
     x: Vec<f64>,

@@ -31,7 +31,7 @@ use std::iter::zip;
 use support::{Fault, Point, fault, refuse};
 
 /// The fixed outline of the flat sheet: corners SW, SE, NE, NW (mm).
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Outline {
     /// Corners SW, SE, NE, NW (mm).

@@ -59,7 +59,7 @@ impl DesignVector {
 }
 
 /// The interval of admissible ligament widths (mm).
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct WidthChart {
     /// Minimum ligament width (mm).

@@ -4,7 +4,7 @@
 //! i + j is even. Panel k = q M + p is in column p and row q.
 
 /// An M x N sheet of quadrilateral panels.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Grid {
     /// Panels along x.
     pub m: usize,
@@ -14,7 +14,7 @@ pub struct Grid {
 
 /// The two endpoints at a cut: x is on the south side of a horizontal and on the east side of a
 /// vertical cut, x' on the opposite side.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Endpoint {
     /// x_ij.
     X,

@@ -11,7 +11,7 @@ use faer::c64;
 use support::Point;
 
 /// What a hole or a clip is measured to.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug)]
 pub enum Obstacle {
     /// Distance from the centre of a hole to the line between two corners of the panel.
     Edge([usize; 2]),
@@ -24,7 +24,7 @@ pub enum Obstacle {
 }
 
 /// The room that a hole or a clip has at one obstacle.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug)]
 pub struct Clearance {
     /// What the distance is measured to.
     pub obstacle: Obstacle,

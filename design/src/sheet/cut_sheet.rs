@@ -34,7 +34,7 @@ use std::sync::Arc;
 use support::{Fault, Point, refuse};
 
 /// The point at which the hinge deformation (8) is measured.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum HingePoint {
     /// The ideal corner shared by the two panels, as in the paper.
@@ -44,7 +44,7 @@ pub enum HingePoint {
 }
 
 /// A point at which a panel is held or pulled.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default)]
 pub struct AttachmentPoint {
     /// What is attached.
     pub name: String,
@@ -59,7 +59,7 @@ pub struct AttachmentPoint {
 }
 
 /// Options of the sheet that a pattern defines.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug)]
 pub struct SheetOptions {
     /// The point at which (8) is measured.
     pub hinge_point: HingePoint,
@@ -68,7 +68,7 @@ pub struct SheetOptions {
 }
 
 /// The ligament that joins two panels.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug)]
 pub struct Hinge {
     /// The two panels and the cuts that bound the hinge.
     pub site: HingeSite,
@@ -111,7 +111,7 @@ pub struct Sheet {
 }
 
 /// The gradient of a function of the sheet with respect to all quantities of the sheet.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Debug)]
 pub struct SheetGradient {
     /// Gradient in the corners SW, SE, NE, NW of every panel, at fixed reference, centroid and
     /// area.

@@ -27,7 +27,7 @@ pub struct CuttingProcess {
 }
 
 /// What is cut at a hinge, and its window.
-#[derive(Clone, Serialize, Deserialize, JsonSchema)]
+#[derive(Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct ProcessKeys {
     /// Radius of the hole at the tip of a main cut, as a multiple of w_lig, above 0 and below 1;

@@ -13,7 +13,7 @@ use std::f64::consts::PI;
 use support::Point;
 
 /// The window of a hinge in the flat sheet.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug)]
 pub struct HingeWindow {
     /// Foot of the perpendicular from O to the edge of the secondary cut: the origin of the hinge
     /// frame (mm).

@@ -105,7 +105,7 @@ pub struct HingeMotion {
 }
 
 /// The gradient of a scalar with respect to the flat geometry in (8).
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct HingeGeometryGradient {
     /// Gradient in the attachment point.
     pub attachment: c64,

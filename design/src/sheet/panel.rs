@@ -9,7 +9,7 @@ use std::array::from_fn;
 use support::{Fault, Point, refuse};
 
 /// A point of a panel in the flat sheet.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default)]
 pub enum PanelPoint {
     /// The centroid of the area.
     #[default]
@@ -21,7 +21,7 @@ pub enum PanelPoint {
 }
 
 /// A rigid panel in the flat sheet.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct Panel {
     /// SW, SE, NE, NW of its cell (mm).
     pub corners: [Point; 4],

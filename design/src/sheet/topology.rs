@@ -9,7 +9,7 @@ use std::sync::Arc;
 pub type PanelCorner = (usize, usize);
 
 /// A corner at which two panels remain attached, and the cut endpoints that define the cuts there.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HingeSite {
     /// The vertex (i, j) of the secondary cut.
     pub vertex: [usize; 2],
@@ -34,7 +34,7 @@ pub struct HingeSite {
 /// A void and the four panels around it are a loop of four hinges, and loops that share two panels
 /// open together. The voids that are kept therefore say which cells are panels, and which
 /// neighbours hang together: those that are on one loop.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Debug, PartialEq)]
 pub struct Topology {
     /// All cells.
     pub grid: Grid,

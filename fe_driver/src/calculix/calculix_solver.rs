@@ -15,7 +15,7 @@ use support::program::ToolError;
 use support::vtk::UnstructuredGrid;
 
 /// gmsh and CalculiX, which solve windows and sheets.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct CalculiX {
     /// Generates the mesh.
     pub gmsh: Gmsh,

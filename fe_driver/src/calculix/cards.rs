@@ -135,7 +135,7 @@ pub(crate) fn even_lambdas() -> impl Iterator<Item = f64> {
 /// which is linear in the four numbers q at any rotation. These depend only on lambda.
 ///
 /// It is the motion of panel B relative to A that corresponds to a deformation in the mean frame.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug)]
 pub(crate) struct PanelMotion {
     /// Rotation about O (rad).
     pub theta: f64,

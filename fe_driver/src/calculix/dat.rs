@@ -7,7 +7,7 @@
 use support::{Fault, fault};
 
 /// The numbers of rows that a complete increment prints.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug)]
 pub struct Layout {
     /// Nodes of the mesh.
     pub nodes: usize,
@@ -22,7 +22,7 @@ pub struct Layout {
 }
 
 /// The printed output of one converged increment.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Debug, Default, PartialEq)]
 pub struct OutputFrame {
     /// Total time: the fraction of the path.
     pub lambda: f64,
@@ -40,7 +40,7 @@ pub struct OutputFrame {
 }
 
 /// What the rows of a block are.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug)]
 pub(crate) enum Block {
     /// Total internal energy of a set of elements.
     Energy,

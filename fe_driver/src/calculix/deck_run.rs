@@ -169,7 +169,7 @@ pub static CCX: ToolKind = ToolKind {
 const END_MARKER: &str = "Job finished";
 
 /// The CalculiX program.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct Ccx(pub Tool);
 
 /// Result of a completed run of ccx.

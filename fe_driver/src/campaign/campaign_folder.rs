@@ -23,7 +23,7 @@ use std::str::FromStr;
 use support::{Fault, FileError, fault, lock_file, refuse, whole_file};
 
 /// The folder of a campaign.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub(crate) struct CampaignFolder(pub PathBuf);
 
 /// The contents of `campaign.json`.
@@ -133,7 +133,7 @@ pub fn finished_windows(
 // share the folder. Together they do the same jobs as one run of the whole list.
 
 /// The part of the jobs that one run works on; written `2/4` for the second of four.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shard {
     /// Number of the shard, 1 to `count`.
     index: usize,

@@ -18,7 +18,7 @@ use std::time::Duration;
 use support::{fault, toml_file};
 
 /// A campaign with its material, from a TOML file of `configs/campaigns/`.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Campaign {
     /// Name of the campaign; it is stored in the results folder.
@@ -62,7 +62,7 @@ pub struct Campaign {
 }
 
 /// What a job of a campaign is for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum JobPart {
     /// A ray on the mesh of the campaign.
     Ray,

@@ -27,7 +27,7 @@ pub struct RunOptions {
 }
 
 /// The progress of a run.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct CampaignProgress {
     /// All jobs of the shard, including the jobs of earlier runs.
     pub tally: Tally,
@@ -163,7 +163,7 @@ pub struct CollectedWindow {
 }
 
 /// Numbers of jobs that were restored, already present, and foreign.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Restored {
     /// Jobs that were restored.
     pub written: usize,

@@ -42,7 +42,7 @@ const MAX_COUNT: usize = 1_000_000;
 const DIMENSIONS: usize = 6;
 
 /// A region of designs and ray ends, and how many rays are drawn in it.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RayBox {
     /// Number of rays, 1 to 1 000 000.

@@ -13,7 +13,7 @@ use rand_chacha::ChaCha8Rng;
 
 /// A hinge driven along a path, and the fractions of the path at which weights are compared with
 /// it.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Debug, PartialEq)]
 pub struct SpotPath {
     /// The hinge and its path.
     pub hinge: HingePath,

@@ -12,7 +12,7 @@ use std::path::Path;
 use support::refuse;
 
 /// Numbers of jobs in each state, with their total cost.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Debug, Default, Serialize)]
 pub struct Tally {
     /// Jobs without a completed attempt.
     pub open: usize,
@@ -158,7 +158,7 @@ pub struct Throughput {
 }
 
 /// The state of a campaign.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Debug, Serialize)]
 pub struct CampaignStatus {
     /// Name of the campaign.
     pub name: String,
@@ -216,7 +216,7 @@ pub fn status(folder: &Path) -> Result<CampaignStatus, SolveListError> {
 // The plan of a run: the jobs that it would solve, and why.
 
 /// The work that a run would do.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Debug, Serialize)]
 pub struct Plan {
     /// Numbers of jobs by their state.
     pub tally: Tally,

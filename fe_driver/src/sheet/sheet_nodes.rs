@@ -13,7 +13,7 @@ const ON_LINE: f64 = 1e-6;
 const SUPPORTED: f64 = 1.45;
 
 /// Nodes of a sheet problem; they count from 0.
-#[derive(Clone, Debug, Default)]
+#[derive(Debug, Default)]
 pub(crate) struct SheetNodes {
     /// The rigid panels; none if panels are meshed.
     pub bodies: Vec<RigidBody>,
@@ -152,7 +152,7 @@ pub(crate) const STIFFNESS: f64 = 30.0;
 pub(crate) const GRAVITY: f64 = 1e3 * STANDARD_GRAVITY;
 
 /// A rigid panel; nodes count from 0.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub(crate) struct RigidBody {
     /// The corners of a tetrahedron, the first where the panel is held or pulled, and its centroid
     /// outside of its windows, in the flat sheet (mm).

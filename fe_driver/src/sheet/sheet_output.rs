@@ -4,7 +4,7 @@ use crate::{Block, Printed, SheetModel, at_node, force_set, hinge_set, numbers};
 use mesher::{ElementKind, MeshPart};
 
 /// What a complete increment of a sheet prints.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub(crate) struct SheetLayout {
     /// The nodes in the middle of the thickness, in their order.
     middle: Vec<usize>,
@@ -17,7 +17,7 @@ pub(crate) struct SheetLayout {
 }
 
 /// The printed output of one converged increment of a sheet.
-#[derive(Clone, Debug, Default)]
+#[derive(Debug, Default)]
 pub(crate) struct SheetFrame {
     /// Time of the step.
     pub time: f64,

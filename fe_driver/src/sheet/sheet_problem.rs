@@ -16,7 +16,7 @@ use support::{Fault, Point, refuse};
 const RECIPE_VERSION: u32 = 3;
 
 /// What keeps the panels in their plane.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum OutOfPlaneRestraint {
     /// The panels cannot leave it; the ligaments can.
@@ -108,7 +108,7 @@ pub(crate) const SECONDS: f64 = 10.0;
 
 /// When the weight comes on, and the loads after it: (lambda, fraction) with straight lines
 /// between.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Debug)]
 pub struct History {
     /// Fraction of the weight.
     pub weight: Vec<Point>,

@@ -41,7 +41,7 @@ pub enum SolveListError {
 const TRIES: usize = 3;
 
 /// One solve of a list.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub(crate) struct Job<S: Solve = WindowSolve> {
     pub id: String,
     pub solve: S,
@@ -60,7 +60,7 @@ pub(crate) struct Workers<'a, S: Solve = WindowSolve> {
 }
 
 /// An event at a solve of a list, as a history states it.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Debug, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum SolveEvent {
     /// Its record when a worker takes it up; another process may have changed it since the list was

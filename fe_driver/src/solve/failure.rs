@@ -45,7 +45,7 @@ pub enum FailureKind {
 }
 
 /// What ended an attempt before the end of its path.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Cause {
     /// The problem, according to its solver: the next attempt may help.
     Problem(FailureKind),
@@ -74,7 +74,7 @@ impl FailureKind {
 
 /// The attempts in their order, each made after an earlier one has failed by the mechanics or the
 /// mesh of the problem. Which of them are made is for each kind of problem to say.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, strum::Display)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, strum::Display)]
 #[serde(rename_all = "kebab-case")]
 #[strum(serialize_all = "kebab-case")]
 pub enum AttemptKind {

@@ -75,7 +75,7 @@ struct JobRecord<R> {
 }
 
 /// The state of a solve in its folder.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Debug)]
 pub(crate) enum SolveState<S: Solve = WindowSolve> {
     /// No attempt has ended; `started` if an attempt was started.
     Open { started: bool },
@@ -122,7 +122,7 @@ fn folders(folder: &Path) -> Result<Vec<String>, FileError> {
 }
 
 /// The folder of one solve.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct SolveFolder(pub PathBuf);
 
 impl SolveFolder {

@@ -73,7 +73,7 @@ pub struct Solution<P = Vec<HingeSample>> {
 }
 
 /// Versions of the external programs that determine a result.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ToolVersions {
     /// Version of gmsh.
     pub gmsh: String,

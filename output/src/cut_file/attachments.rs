@@ -15,7 +15,7 @@ use support::{Fault, Point};
 const ARM: f64 = 2.0;
 
 /// A point of the flat sheet at which a panel is held or pulled.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct PlacedAttachment {
     /// What is attached.
     pub name: String,

@@ -67,7 +67,7 @@ impl Layer {
 }
 
 /// A colour by which machines tell cuts from marks.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub(super) enum Pen {
     Blue,
@@ -75,7 +75,7 @@ pub(super) enum Pen {
 }
 
 /// The shapes of a file in the order in which they are written and cut.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default)]
 pub struct CutDrawing {
     /// Each shape with its layer.
     pub shapes: Vec<(Layer, Shape)>,

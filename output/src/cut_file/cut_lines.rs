@@ -48,7 +48,7 @@ const ROUNDING: f64 = 1e-5;
 const METRE: f64 = 1000.0;
 
 /// One straight cut through the sheet.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug)]
 pub struct Slit {
     /// Its ends (mm); the first is always the tip O of a hinge.
     pub ends: [Point; 2],
@@ -57,7 +57,7 @@ pub struct Slit {
 }
 
 /// The drilled end of a slit.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug)]
 pub struct Hole {
     /// The tip O of its hinge (mm).
     pub centre: Point,
@@ -66,7 +66,7 @@ pub struct Hole {
 }
 
 /// The finished geometry of a cut sheet.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct CutLines {
     /// All cuts inside the sheet, each once.
     pub slits: Vec<Slit>,

@@ -86,7 +86,7 @@ fn compensating() -> String {
 }
 
 /// The smallest features of a sheet, and its size (mm).
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Serialize)]
 pub struct Features {
     /// Diameter of the smallest hole.
     pub hole: f64,

@@ -13,7 +13,7 @@ pub const OVERLAP: f64 = 10.0;
 const MAX_PAGES: usize = 2000;
 
 /// The tiles of a drawing.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct Tiling {
     /// Width and height of a page (mm).
     pub page: [f64; 2],

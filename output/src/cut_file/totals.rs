@@ -8,7 +8,7 @@ use serde::Serialize;
 use std::{collections::BTreeMap, fmt};
 
 /// Totals of a drawing in cutting order.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, Serialize)]
 pub struct Totals {
     /// Number of holes.
     pub holes: usize,

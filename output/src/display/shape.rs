@@ -41,7 +41,7 @@ pub struct Text {
 }
 
 /// The point of a text that its position refers to.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Anchor {
     /// The left end of the baseline.
     Start,

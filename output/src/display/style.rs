@@ -4,7 +4,7 @@
 pub type Colour = [u8; 3];
 
 /// How a shape is drawn. A text is filled.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug)]
 pub struct Style {
     pub(super) fill: Option<Colour>,
     pub(super) fill_opacity: f64,

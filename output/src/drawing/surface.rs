@@ -8,7 +8,7 @@ use design::geometry::polygon::{bounds, size};
 use support::Point;
 
 /// From where a surface is seen.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug)]
 pub enum View {
     /// From above the sheet: x to the right, y up.
     Above,

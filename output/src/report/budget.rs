@@ -5,7 +5,7 @@ use serde::Serialize;
 use support::table::{Cell, Table};
 
 /// The error budget of the best design.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, Serialize)]
 pub struct Budget {
     /// Causes and their sum: standard deviations.
     #[serde(flatten)]

@@ -16,7 +16,7 @@ use serde::Serialize;
 use serde_json::Value;
 
 /// A fact of the best design of a run.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, Serialize)]
 pub struct Fact {
     /// Its name; several facts of a run may have the same.
     pub label: &'static str,

@@ -8,7 +8,7 @@ use serde::Serialize;
 use surrogate::Surrogate;
 
 /// One hinge of the best design in the deployed sheet.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Serialize)]
 pub struct HingeRow {
     /// Index of the hinge.
     pub hinge: usize,

@@ -9,7 +9,7 @@ use design::objective::design_problem::{Deployment, DesignProblem};
 use scene::{Scene, panel_name};
 
 /// Load and stroke at the end of a path.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct Reached {
     /// What moves the sheet, and what its displacement means.
     pub stroke_of: String,

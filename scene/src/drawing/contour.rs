@@ -14,7 +14,7 @@ pub(super) const MOST_POINTS: usize = 100_000;
 pub(super) const LISTED: usize = 5;
 
 /// A line of a drawing, flattened to segments.
-#[derive(Clone, Debug, Default)]
+#[derive(Debug, Default)]
 pub(super) struct Contour {
     pub points: Vec<Point>,
     /// Whether its end is connected to its start.

@@ -26,7 +26,7 @@ const OTHERS: [(&str, &str); 6] = [
 ];
 
 /// The outline in a drawing.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub(crate) struct DrawnOutline {
     /// Its vertices, y upwards.
     pub vertices: Vec<Point>,

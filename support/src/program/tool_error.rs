@@ -1,7 +1,7 @@
 //! Errors of external programs.
 
 /// How a program ended without a result.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ToolEnd {
     /// It was not found, cannot be started, or is another program.
     Unusable,

@@ -9,7 +9,7 @@ use crate::{
 };
 
 /// The compression functional.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug)]
 pub struct Compression {
     /// tau, in units of eta_a.
     pub temperature: f64,

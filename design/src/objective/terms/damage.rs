@@ -17,7 +17,7 @@ pub const NEARLY_TORN: f64 = 0.9;
 const TEARING: f64 = 100.0;
 
 /// The damage functional.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug)]
 pub struct DamageFunctional {
     /// D or D_peak.
     pub measure: DamageMeasure,

@@ -29,7 +29,7 @@ const PER_INTERVAL: f64 = 10.0;
 const NARROWEST_INTERVAL: f64 = 0.01;
 
 /// The penalty on states outside a training domain.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Debug)]
 pub struct DomainPenalty {
     /// The training domain of the hinge law; without one the penalty is zero.
     pub domain: Option<TrainingDomain>,

@@ -16,7 +16,7 @@ use crate::{
 const MARGIN: f64 = 1.1;
 
 /// The penalty on holes and clips without room.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Debug)]
 pub struct Fastenings {
     /// The points at which panels are held or pulled.
     pub attachments: Vec<AttachmentPoint>,

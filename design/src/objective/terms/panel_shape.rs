@@ -28,7 +28,7 @@ const WELL_SHAPED: f64 = 4.0;
 const PAIRS: [[usize; 2]; 6] = [[0, 1], [1, 2], [2, 3], [3, 0], [0, 2], [1, 3]];
 
 /// The panel shape penalty.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug)]
 pub struct PanelShape {
     /// l_min (mm): 0 does not limit the distances.
     pub min_distance: f64,

@@ -21,7 +21,7 @@ use support::Point;
 const WEIGHT: f64 = 0.01;
 
 /// The barrier at the minimum panel width.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug)]
 pub struct PanelWidth {
     /// d_min (mm), positive.
     pub minimum: f64,

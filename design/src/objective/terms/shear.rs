@@ -9,7 +9,7 @@ use crate::{
 };
 
 /// The shear functional.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug)]
 pub struct Shear {
     /// tau, in units of eta_s.
     pub temperature: f64,

@@ -14,7 +14,7 @@ use crate::{
 };
 
 /// The symmetric difference of target and deployed outline.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Debug)]
 pub struct SymmetricDifference {
     shape: ShapeDistance,
     /// The target, counter-clockwise (mm).
