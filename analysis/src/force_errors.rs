@@ -14,7 +14,7 @@ use hinge::{HingeDeformation, HingeDesign};
 use std::array::from_fn;
 use std::f64::consts::PI;
 use std::iter::zip;
-use support::Point;
+use support::{Extremes, Point};
 
 /// (F_a, F_s, M_theta) at some hinges, with their indices (N, N, N mm).
 pub(crate) type Mode = Vec<(usize, [f64; 3])>;
@@ -167,7 +167,7 @@ impl HingePosition {
 fn factor(n: usize, k: impl Fn(usize, usize) -> f64) -> Vec<Vec<f64>> {
     let mut left: Vec<f64> = (0..n).map(|h| k(h, h)).collect();
     let mut columns: Vec<Vec<f64>> = Vec::new();
-    while let Some(pivot) = (0..n).max_by(|&h, &j| left[h].total_cmp(&left[j]))
+    while let Some(pivot) = (0..n).largest_by(|h| left[*h])
         && left[pivot] > LEFT_OUT
     {
         let root = left[pivot].sqrt();

@@ -16,6 +16,7 @@ use crate::calibration::CALIBRATION;
 use crate::localisation::{critical_edge, gamma};
 use hinge::{Regime, SheetMaterial};
 use serde::Serialize;
+use support::Extremes;
 use support::severity::{Finding, Severity};
 
 /// The intended use of a material.
@@ -161,7 +162,7 @@ fn law(material: &SheetMaterial) -> Vec<Finding> {
         format!("the material yields at {yields} MPa, a strain of {percent:.2} %, and {hardens}");
     let mut verdicts = vec![Severity::Note.finding(yields)];
     let slope = |pair: &[[f64; 2]]| (pair[1][0] - pair[0][0]) / (pair[1][1] - pair[0][1]);
-    let drop = plastic.windows(2).min_by(|a, b| slope(a).total_cmp(&slope(b)));
+    let drop = plastic.windows(2).smallest_by(|pair| slope(pair));
     if let Some(&[[from, start], [to, end]]) =
         drop.and_then(|pair| <&[[f64; 2]; 2]>::try_from(pair).ok())
         && to < from
@@ -247,9 +248,7 @@ fn slenderness(ligaments: &[LigamentEstimate]) -> Option<Finding> {
 /// Gamma at the intended panel edge.
 fn panels(intended: &Intended, ligaments: &[LigamentEstimate]) -> Option<Finding> {
     let pitch = intended.lying_pitch?;
-    let least = ligaments
-        .iter()
-        .min_by(|a, b| a.gamma.unwrap_or(0.0).total_cmp(&b.gamma.unwrap_or(0.0)))?;
+    let least = ligaments.iter().smallest_by(|ligament| ligament.gamma.unwrap_or(0.0))?;
     let gamma = least.gamma?;
     let at = format!(
         "panels of {pitch:.1} mm with ligaments of {} mm have Gamma = {gamma:.3} (L* = {:.0} mm)",

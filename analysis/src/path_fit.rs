@@ -14,6 +14,7 @@ use crate::measured_points::{FittedPoint, MeasuredPoint};
 use crate::shape_path::{PathShape, ShapePath};
 use design::geometry::plane::{complex, point};
 use design::geometry::similarity::{Correspondence, Scale, Similarity};
+use support::Extremes;
 
 /// Minimum number of points: four points are eight numbers, for at most five unknowns.
 pub const MIN_POINTS: usize = 4;
@@ -68,7 +69,7 @@ impl PathFit<'_> {
         let steps = (0..self.path.shapes.len()).map(|step| step as f64);
         let best = steps
             .map(|step| (step, misfit(step)))
-            .min_by(|a, b| a.1.total_cmp(&b.1))
+            .smallest_by(|found| found.1)
             .map_or(0.0, |(step, _)| step);
         golden_minimum((best - 1.0).max(0.0), (best + 1.0).min(self.path.end()), misfit)
     }
@@ -144,6 +145,6 @@ fn golden_minimum(mut low: f64, mut high: f64, f: impl Fn(f64) -> f64) -> f64 {
     }
     // The ends of the path belong to it.
     let candidates = [low, 0.5 * (low + high), high].map(|x| (x, f(x)));
-    let best = candidates.into_iter().min_by(|x, y| x.1.total_cmp(&y.1));
+    let best = candidates.into_iter().smallest_by(|found| found.1);
     best.map_or(low, |(x, _)| x)
 }

@@ -16,7 +16,7 @@ use std::{
     fmt::{self, Display, Formatter},
     path::{Path, PathBuf},
 };
-use support::{nearest::unknown, severity::Severity};
+use support::{Joined, nearest::unknown, severity::Severity};
 
 /// A design that may be cut.
 pub struct CheckedCut {
@@ -119,11 +119,10 @@ impl CheckedCut {
             })
             .collect();
         let accepted = verdicts.iter().any(|verdict| verdict.refuses.is_empty());
-        let said: Vec<String> = verdicts.iter().map(Verdict::to_string).collect();
+        let said = verdicts.iter().map(Verdict::to_string).joined("; ");
         ensure!(
             force || accepted || verdicts.is_empty(),
-            "no service cuts this sheet: {}; --force writes the file",
-            said.join("; ")
+            "no service cuts this sheet: {said}; --force writes the file"
         );
         let out = self.out_or(out, &format!("cut/{}", machine.name));
         let _held = run_folder::hold(&out)?;

@@ -15,7 +15,7 @@ use scene::{
     run_inputs::{SCENE_FILE, holds_a_run},
 };
 use std::{fs::File, path::Path};
-use support::unread;
+use support::{Joined, unread};
 
 /// Width of the pictures (px).
 const PICTURE_WIDTH: u32 = 1600;
@@ -86,11 +86,10 @@ pub fn ended(scene: &Scene, report: &Report) -> Result<()> {
         Ended::Stopped => bail!(unfinished(scene, report.steps)),
         Ended::Stuck { reason } => bail!("the search is stuck: {reason}"),
     }
-    let errors: Vec<String> = report.errors().map(Warning::to_string).collect();
+    let errors = report.errors().map(Warning::to_string).joined("; ");
     ensure!(
         report.cut_file,
-        "no cut file: {}; --force writes one where the geometry allows it",
-        errors.join("; ")
+        "no cut file: {errors}; --force writes one where the geometry allows it"
     );
     Ok(())
 }

@@ -8,7 +8,7 @@ use crate::split::{Geometries, Split, SplitPlan};
 use hinge::{HingeConstants, HingeDeformation, HingeDesign, Regime, TrainingDomain};
 use std::cmp::{Ordering, Reverse};
 use std::collections::{BTreeMap, BTreeSet};
-use support::{fault, refuse};
+use support::{Joined, fault, refuse};
 
 /// The order of the rows of a database.
 pub(crate) fn by_job_and_lambda(left: &Row, right: &Row) -> Ordering {
@@ -129,10 +129,8 @@ fn reasons(rejected: &BTreeMap<Rejection, usize>) -> String {
     if rejected.is_empty() {
         return "run the campaign before collecting it".into();
     }
-    let reasons = rejected.iter();
-    let reasons: Vec<String> =
-        reasons.map(|(reason, count)| format!("{count} were rejected since {reason}")).collect();
-    reasons.join("; ")
+    let reason = |(reason, count)| format!("{count} were rejected since {reason}");
+    rejected.iter().map(reason).joined("; ")
 }
 
 // The meshes of a database: the mesh of its rays, and the finer mesh on which some of them were

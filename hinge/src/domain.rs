@@ -31,7 +31,7 @@ use crate::net_ligament::{NetLigament, NetLigamentJet};
 use crate::{HingeConstants, HingeDeformation, HingeDesign, Jet};
 use serde::{Deserialize, Serialize};
 use std::array::from_fn;
-use support::vectors::dot;
+use support::{Extremes, vectors::dot};
 
 /// The states that a surrogate was trained on; section 2.4. The domain is computed from the data
 /// and stored with the weights.
@@ -100,7 +100,7 @@ impl TrainingDomain {
             along * support.recip()
         });
         // Ratios are divided by the largest, so that the powers neither overflow nor underflow.
-        let largest = ratios.iter().map(|ratio| ratio.value).fold(0.0, f64::max);
+        let largest = ratios.iter().map(|ratio| ratio.value).largest();
         let sum = ratios.iter().filter(|ratio| ratio.value > 0.0);
         let sum = sum
             .fold(Jet::constant(0.0), |sum, ratio| sum + (*ratio * (1.0 / largest)).powf(EXPONENT));
@@ -118,7 +118,7 @@ impl TrainingDomain {
             let side = |sign: f64| {
                 let axis = DIRECTION.iter().position(|m| m[i] == sign && dot(m, m) == 1.0);
                 let axis = axis.expect("the axes are among the directions");
-                self.supports.iter().map(|row| row[axis]).fold(0.0, f64::max)
+                self.supports.iter().map(|row| row[axis]).largest()
             };
             let (centre, half) = (self.centre[i], self.half_range[i]);
             [centre - half * side(-1.0), centre + half * side(1.0)]
@@ -379,7 +379,13 @@ mod tests {
     #[test]
     fn a_box_a_single_state_and_no_state_are_handled() {
         let state = [[-0.5, 0.2], [-0.4, 0.4], [0.0, 1.2]];
-        let boxed = TrainingDomain::from_box(state, [5.0, 25.0], [0.8, 2.3]);
+        let corner = |k: usize| [0, 1, 2].map(|i: usize| state[i][(k >> i) & 1]);
+        let ends = |k| {
+            let [eta_a, eta_s, theta] = corner(k);
+            let end = |w_lig| HingeDeformation::from_eta(eta_a, eta_s, theta, w_lig);
+            [8.0, 16.0].map(|w_lig| (design(w_lig), end(w_lig)))
+        };
+        let boxed = domain(&(0..8).flat_map(ends).collect::<Vec<_>>());
         let deep = |eta_a, eta_s, theta| {
             boxed.depth(&design(9.0), &HingeDeformation::from_eta(eta_a, eta_s, theta, 9.0))
         };

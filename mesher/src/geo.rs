@@ -8,7 +8,7 @@ pub(crate) use sheet_script::sheet_script;
 
 use crate::{Boundary, Frame, PlaneRecipe, Window};
 use std::ops::RangeInclusive;
-use support::add_line;
+use support::{Joined, add_line};
 
 /// Physical tag of the faces of a window.
 const WINDOW: usize = 100;
@@ -113,7 +113,7 @@ impl Script {
 
 /// Curve numbers as a comma-separated list.
 fn joined(curves: &[i32]) -> String {
-    curves.iter().map(i32::to_string).collect::<Vec<_>>().join(", ")
+    curves.iter().map(i32::to_string).joined(", ")
 }
 
 #[cfg(test)]

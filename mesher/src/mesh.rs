@@ -9,7 +9,7 @@ use crate::{Boundary, ElementKind, Extrusion, MeshRecipe, PlaneMesh, Window, sid
 use hinge::HingeDesign;
 use std::fmt::Write;
 use support::vtk::{CellKind, UnstructuredGrid};
-use support::{Fault, fault, refuse};
+use support::{Extremes, Fault, ensure, fault, refuse};
 
 /// A window of solid elements of one kind; indices count from 0.
 #[derive(Clone, Debug)]
@@ -154,9 +154,10 @@ impl WindowMesh {
     /// Returns the quality measures of the mesh, or its first defect.
     pub fn quality(&self) -> Result<MeshQuality, Fault> {
         for boundary in [Boundary::ArcA, Boundary::ArcB] {
-            if self.plane.edges.iter().all(|(of, _)| *of != boundary) {
-                refuse!("the mesh has no edge on {boundary:?}");
-            }
+            ensure!(
+                self.plane.edges.iter().any(|(of, _)| *of == boundary),
+                "the mesh has no edge on {boundary:?}"
+            );
         }
         let (jacobian_ratio, largest_aspect) = check_elements(&self.plane, &self.gauss_volumes)?;
         let (area, exact) = (self.volume() / self.thickness, Window(&self.design).area());
@@ -182,11 +183,12 @@ pub(crate) fn check_elements(
     for (element, volumes) in gauss_volumes.iter().enumerate() {
         let kind = ElementKind::of(&plane.faces[element % plane.faces.len()]);
         let jacobians = (0..).zip(volumes).map(|(point, v)| v / kind.gauss_weight(point));
-        let minimum = jacobians.clone().fold(f64::INFINITY, f64::min);
-        let maximum = jacobians.fold(0.0, f64::max);
-        if minimum <= 0.0 || minimum.is_nan() {
-            refuse!("element {element} is folded: its Jacobian is {minimum} mm^3 at a Gauss point");
-        }
+        let minimum = jacobians.clone().smallest();
+        let maximum = jacobians.largest();
+        ensure!(
+            minimum > 0.0,
+            "element {element} is folded: its Jacobian is {minimum} mm^3 at a Gauss point"
+        );
         jacobian_ratio = jacobian_ratio.min(minimum / maximum);
     }
     let mut largest_aspect = 1.0_f64;
@@ -195,8 +197,8 @@ pub(crate) fn check_elements(
             let [p, q] = [from, to].map(|node| plane.nodes[node]);
             (q[0] - p[0]).hypot(q[1] - p[1])
         });
-        let longest = lengths.clone().fold(0.0, f64::max);
-        let aspect = longest / lengths.fold(f64::INFINITY, f64::min);
+        let longest = lengths.clone().largest();
+        let aspect = longest / lengths.smallest();
         if aspect > MAX_ASPECT {
             refuse!(
                 "element {element} is a sliver: the ratio of its longest to its shortest edge is {aspect} > {MAX_ASPECT}"

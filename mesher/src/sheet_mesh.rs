@@ -5,7 +5,7 @@ use crate::{
     SheetShape, Side, Window, check_elements, cross, dot, minus, unit, wrong_area,
 };
 use std::iter::zip;
-use support::{Fault, Point};
+use support::{Extremes, Fault, Point};
 
 /// Largest distance of a node from the arc of its window, over r_win.
 const ON_RIM: f64 = 1e-6;
@@ -176,7 +176,7 @@ impl SheetMesh {
         let corners = faces
             .filter(|(_, of)| **of == part)
             .flat_map(|(face, _)| face[..face.len() / 2].iter().copied());
-        corners.min_by(|one, other| distance(one).total_cmp(&distance(other)))
+        corners.smallest_by(distance)
     }
 }
 

@@ -16,7 +16,7 @@ use std::{
     path::{Path, PathBuf},
     sync::Arc,
 };
-use support::{Fault, at, relative_path, said};
+use support::{Fault, Joined, at, relative_path};
 use surrogate::{Springback, Surrogate};
 
 /// Version of geometry, mechanics and objective: raised when a change of the code changes the loss
@@ -58,7 +58,7 @@ pub struct Scene {
 impl Scene {
     /// Reads a scene and the files that it names, and checks all values.
     pub fn read(path: &Path) -> Result<Self, Fault> {
-        Self::new(support::toml_file::read(path).map_err(said)?, path)
+        Self::new(support::toml_file::read(path)?, path)
     }
 
     /// Reads the material, the target and the weights of a scene whose paths are relative to the
@@ -93,7 +93,7 @@ impl Scene {
             checks::config(&config, &topology).map(|()| topology)
         });
         let topology = checked.map_err(at(place))?;
-        let measured = SheetMaterial::load(&resolved(path, &config.material)).map_err(said)?;
+        let measured = SheetMaterial::load(&resolved(path, &config.material))?;
         let material = SheetMaterial {
             thickness: config.thickness.unwrap_or(measured.thickness),
             ..measured.clone()
@@ -173,7 +173,7 @@ impl Scene {
         let weights = self.hinge.networks.iter().take(read);
         let weights = weights.map(Surrogate::hash);
         let solved = self.hinge.solved.iter().map(SolvedHinges::hash);
-        let weights = weights.chain(solved).collect::<Vec<_>>().join("/");
+        let weights = weights.chain(solved).joined("/");
         let target = self.target.hash();
         let material = if self.weight_by_area() == [0.0; 2] {
             self.material.law_hash()

@@ -26,7 +26,7 @@ use std::{
     sync::{Arc, atomic::AtomicBool},
     time::{Duration, Instant},
 };
-use support::{Fault, at, ensure, regular_file, sealed_json, whole_file};
+use support::{Fault, Joined, at, ensure, regular_file, sealed_json, whole_file};
 
 /// The folder of the coarse searches, in the folder of a run.
 pub const LEVELS: &str = "levels";
@@ -320,10 +320,9 @@ impl RunState {
         let keys = self.changed_keys(scene);
         let keys = keys.iter().map(String::as_str).filter(forbidden);
         let inputs = self.changed_inputs(scene).into_iter().filter(forbidden);
-        let changed: Vec<String> = (keys.map(|key| format!("the key `{key}`")))
+        (keys.map(|key| format!("the key `{key}`")))
             .chain(inputs.map(|input| format!("the {input}")))
-            .collect();
-        changed.join(", ")
+            .joined(", ")
     }
 
     /// The keys of the scene that changed since the run, without those that may: the number of

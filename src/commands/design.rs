@@ -28,6 +28,7 @@ use scene::{
     run_inputs::{SCENE_FILE, scene_file},
 };
 use std::path::{Path, PathBuf};
+use support::Joined;
 use support::worker_pool::{NoThread, Reports, work_through};
 
 /// Design a sheet: cut pattern and ligament widths for a target shape
@@ -251,19 +252,14 @@ fn with_level_bars<T>(scene: &Scene, searches: impl FnOnce(OnStep) -> T) -> T {
 /// fraction inside its training domain.
 fn progress_line(step: &StepRecord, learned: bool) -> String {
     let scores = &step.scores;
-    let terms: Vec<String> = (scores.terms.iter())
+    let terms = (scores.terms.iter())
         .filter(|(_, value)| **value != 0.0)
         .map(|(name, value)| format!("{} {}", in_words(name), shown(*value)))
-        .collect();
+        .joined(", ");
     let inside = if learned {
         format!(", {:.0} % inside the domain", 100.0 * scores.share_inside)
     } else {
         String::new()
     };
-    format!(
-        "loss {:.4} ({}), outline {:.2} mm{inside}",
-        scores.loss,
-        terms.join(", "),
-        scores.outline_error,
-    )
+    format!("loss {:.4} ({terms}), outline {:.2} mm{inside}", scores.loss, scores.outline_error)
 }

@@ -11,6 +11,7 @@ use anyhow::Result;
 use app::new_project::first_scene::OPENING;
 use design::sheet::ideal_deployment::opened_about;
 use scene::{At, NamedPoint, Scene, SceneConfig, StartConfig, rounded};
+use support::Extremes;
 
 /// The scene of a uniform sheet with this number of columns and rows.
 pub(crate) fn with_panels(scene: &Scene, panels: [usize; 2]) -> Result<Scene> {
@@ -67,7 +68,7 @@ fn moved(panel: [usize; 2], at: At, before: [usize; 2], after: [usize; 2]) -> [u
     };
     let all = near(1).flat_map(|row| near(0).map(move |column| [column, row]));
     let alike = all.filter(|to| (to[0] + to[1]) % 2 == (panel[0] + panel[1]) % 2);
-    let nearest = alike.min_by(|one, other| distance(one).total_cmp(&distance(other)));
+    let nearest = alike.smallest_by(distance);
     nearest.unwrap_or(panel)
 }
 

@@ -18,7 +18,7 @@ use scene::{
     run_inputs::{INPUTS, SCENE_FILE, STATE_FILE, scene_file},
 };
 use std::path::{Path, PathBuf};
-use support::{at, regular_file, text_file, unread};
+use support::{Joined, at, regular_file, text_file, unread};
 
 /// The first line of a scene that the studio writes. It changes no other scene.
 const HEAD: &str =
@@ -194,6 +194,6 @@ fn free_folder(projects: &Path, name: &str) -> Result<PathBuf> {
 fn slug(name: &str) -> String {
     let words = name.to_lowercase();
     let words = words.split(|c: char| !c.is_alphanumeric()).filter(|word| !word.is_empty());
-    let words = words.collect::<Vec<_>>().join("-");
+    let words = words.joined("-");
     words.chars().take(60).collect()
 }

@@ -1,5 +1,6 @@
 //! Reports for people: parts in the order of reading.
 
+use crate::Joined;
 use crate::table::Table;
 use std::fmt::{self, Display};
 
@@ -59,8 +60,7 @@ impl Document {
     }
 
     fn written(&self, part: impl Fn(&DocumentBlock) -> String) -> String {
-        let parts: Vec<String> = self.parts.iter().map(part).collect();
-        parts.join("\n\n") + "\n"
+        self.parts.iter().map(part).joined("\n\n") + "\n"
     }
 }
 
@@ -73,7 +73,7 @@ impl From<Table> for Document {
 
 fn list(mark: &str, items: &[String]) -> String {
     let lines = items.iter().map(|item| format!("{mark} {item}"));
-    lines.collect::<Vec<_>>().join("\n")
+    lines.joined("\n")
 }
 
 impl Display for Document {

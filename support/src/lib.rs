@@ -31,6 +31,7 @@ pub mod caught_panic;
 pub mod csv_table;
 pub mod document;
 pub mod interpolation;
+mod iterators;
 pub mod key_limits;
 pub mod lock_file;
 #[cfg(unix)]
@@ -58,6 +59,7 @@ pub mod whole_file;
 pub mod worker_pool;
 
 pub use fault::{Fault, FileError, at, said, unread, unwritten};
+pub use iterators::{Extremes, Joined};
 
 /// A point or vector of the plane, or a point of a curve.
 pub type Point = [f64; 2];

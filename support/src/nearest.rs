@@ -1,12 +1,14 @@
 //! The known name that a misspelt one probably means.
 
+use crate::Extremes;
+
 /// The name of `known` that is most similar to `name`, if any is similar enough.
 pub fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     known
         .into_iter()
         .map(|candidate| (strsim::jaro_winkler(name, candidate), candidate))
         .filter(|(likeness, _)| *likeness > 0.8)
-        .max_by(|a, b| a.0.total_cmp(&b.0))
+        .largest_by(|(likeness, _)| *likeness)
         .map(|(_, candidate)| candidate)
 }
 

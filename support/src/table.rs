@@ -1,5 +1,6 @@
 //! Tables: on a screen with aligned columns, on a page in Markdown, in a file as CSV.
 
+use crate::Joined;
 use serde::{Serialize, Serializer};
 use std::fmt::{self, Display};
 
@@ -244,7 +245,7 @@ fn csv_line<'c>(cells: impl Iterator<Item = &'c str>) -> String {
             cell.to_owned()
         }
     });
-    quoted.collect::<Vec<_>>().join(",") + "\n"
+    quoted.joined(",") + "\n"
 }
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 use crate::features::{FEATURES, Standardisation};
 use faer::Mat;
 use std::f64::consts::FRAC_1_SQRT_2;
-use support::{Fault, fault, refuse};
+use support::{Fault, Joined, fault, refuse};
 
 /// An array of a weight file, in row-major order.
 #[derive(Clone, Debug, PartialEq)]
@@ -185,11 +185,11 @@ impl Tensor {
                 .all(|(&found, expected)| expected.map_or(found > 0, |length| found == length))
             && self.values.len() == self.shape.iter().product::<usize>();
         if !matches {
-            let lengths: Vec<String> = expected
+            let lengths = expected
                 .iter()
                 .map(|length| length.map_or("any".into(), |length| length.to_string()))
-                .collect();
-            return Err(other_shape(name, &format!("[{}]", lengths.join(", ")), &self.shape));
+                .joined(", ");
+            return Err(other_shape(name, &format!("[{lengths}]"), &self.shape));
         }
         finite(name, &self.values)
     }

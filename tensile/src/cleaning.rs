@@ -3,8 +3,8 @@
 
 use crate::record::{Exclusion, RecordRow};
 use crate::regression::{mean, pools};
-use support::Point;
 use support::statistics::median;
+use support::{Extremes, Point};
 
 /// The monotone part of a record.
 #[derive(Debug)]
@@ -67,7 +67,7 @@ fn mark_unloading(rows: &mut [RecordRow], fall: f64) {
 /// before.
 fn break_of(stresses: &[f64]) -> usize {
     let before = |index: usize| median(stresses[index.saturating_sub(BEFORE)..index].to_vec());
-    let top = (0..stresses.len()).max_by(|a, b| stresses[*a].total_cmp(&stresses[*b]));
+    let top = (0..stresses.len()).largest_by(|row| stresses[*row]);
     let mut later = 0.0;
     let mut end = stresses.len();
     for index in (top.unwrap_or(0) + 1..stresses.len()).rev() {

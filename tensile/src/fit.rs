@@ -10,7 +10,7 @@ use crate::{Exclusion, ReadColumn, Specimen};
 use hinge::SheetMaterial;
 use serde::Serialize;
 use std::path::PathBuf;
-use support::{Fault, Point, fault, refuse};
+use support::{Fault, Joined, Point, fault, refuse};
 
 /// What is known about a material besides the records of its specimens.
 #[derive(Clone, Copy, Debug)]
@@ -218,7 +218,7 @@ fn draws(specimens: &[Specimen]) -> Result<Vec<Draw>, Fault> {
     }
     let names = |draw: bool| {
         let these = specimens.iter().filter(|specimen| specimen.draw.is_some() == draw);
-        these.map(|specimen| specimen.path.display().to_string()).collect::<Vec<_>>().join(", ")
+        these.map(|specimen| specimen.path.display().to_string()).joined(", ")
     };
     Err(fault!(
         "{} have a draw plateau, {} have none: fit them apart, or leave out specimens that broke early",

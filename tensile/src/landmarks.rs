@@ -7,8 +7,8 @@
 
 use crate::regression::{interpolated, mean};
 use serde::Serialize;
-use support::Point;
 use support::vectors::{add, dot};
+use support::{Extremes, Point};
 
 /// Plastic strain at the yield stress Rp0.2 (ISO 6892-1).
 const OFFSET: f64 = 0.002;
@@ -84,7 +84,7 @@ pub(super) fn draw(
     let change = change(upper_yield, noise);
     let higher = curve[top..].iter().position(|row| row[1] > upper_yield + change);
     let region = higher.map_or(curve.len(), |rows| top + rows);
-    let low = (top..region).min_by(|a, b| curve[*a][1].total_cmp(&curve[*b][1])).unwrap_or(top);
+    let low = (top..region).smallest_by(|row| curve[*row][1]).unwrap_or(top);
     let high = highest(curve, low, region);
     let lowest = curve[low][1];
     let fallen = lowest + 0.25 * (upper_yield - lowest);
@@ -157,7 +157,7 @@ fn change(stress: f64, noise: f64) -> f64 {
 /// The last of the highest rows.
 pub(super) fn highest(curve: &[Point], from: usize, to: usize) -> usize {
     let rows = from..to;
-    rows.max_by(|a, b| curve[*a][1].total_cmp(&curve[*b][1])).unwrap_or(from)
+    rows.largest_by(|row| curve[*row][1]).unwrap_or(from)
 }
 
 /// Stress and strain at the end of a plateau: of all constants that continue as a parabola, the

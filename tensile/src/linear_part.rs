@@ -11,7 +11,7 @@ use crate::landmarks::highest;
 use crate::regression::Regression;
 use serde::Serialize;
 use std::ops::Range;
-use support::Point;
+use support::{Extremes, Point};
 
 /// The linear part of a curve.
 #[derive(Debug, Serialize)]
@@ -86,7 +86,7 @@ impl LinearPart {
         let strains = || used.iter().map(|row| row[0] - toe);
         (yields <= METAL * self.young && used.len() >= MIN_SEED).then(|| Self {
             toe,
-            strain: [strains().fold(self.strain[0] - toe, f64::min), strains().fold(0.0, f64::max)],
+            strain: [strains().fold(self.strain[0] - toe, f64::min), strains().largest()],
             ..line
         })
     }
@@ -120,6 +120,6 @@ fn seed(curve: &[Point], span: f64, noise: [f64; 2]) -> Option<LinearPart> {
         Some((slope - 2.0 * error, first..last + 1))
     });
     let finite = windows.filter(|(score, _)| score.is_finite());
-    let (_, rows) = finite.max_by(|a, b| a.0.total_cmp(&b.0))?;
+    let (_, rows) = finite.largest_by(|(score, _)| *score)?;
     LinearPart::through(curve, rows)
 }

@@ -4,6 +4,7 @@ use serde::de::{IntoDeserializer, value::Error};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::str::FromStr;
+use support::Joined;
 
 /// What a column contains.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -88,7 +89,7 @@ impl Quantity {
     /// the unit of the project.
     pub fn units(self) -> String {
         let first = |(_, spellings): (f64, &'static str)| spellings.split(' ').next();
-        self.known().filter_map(first).collect::<Vec<_>>().join(", ")
+        self.known().filter_map(first).joined(", ")
     }
 
     /// The unit of the project for this quantity: N, MPa, mm or 1.

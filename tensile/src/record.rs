@@ -10,7 +10,7 @@ use serde::Serialize;
 use std::fmt;
 use std::path::{Path, PathBuf};
 use support::text_table::TextRow;
-use support::{Fault, fault};
+use support::{Fault, Joined, fault};
 
 /// What a file does not say about its columns and its specimen.
 #[derive(Clone, Debug, Default)]
@@ -336,7 +336,7 @@ fn sizes(
     let near = if near.is_empty() { near } else { format!("; not taken for one: {near}") };
     Err(format!(
         "contains {}: give {} of the specimen (mm){near}",
-        read.collect::<Vec<_>>().join(" and "),
+        read.joined(" and "),
         missing.join(", ")
     ))
 }
@@ -402,7 +402,5 @@ fn pair(
 
 /// Number and name of each column.
 fn listed(labels: &[String]) -> String {
-    let columns: Vec<String> =
-        labels.iter().enumerate().map(|(index, label)| title(index, label)).collect();
-    columns.join(", ")
+    labels.iter().enumerate().map(|(index, label)| title(index, label)).joined(", ")
 }

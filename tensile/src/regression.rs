@@ -1,8 +1,8 @@
 //! The straight line through rows [x, y], by least squares, and linear interpolation between them.
 
 use std::ops::Range;
-use support::Point;
 use support::interpolation::piece;
+use support::{Extremes, Point};
 
 /// The line through a set of rows.
 pub(super) struct Regression {
@@ -97,7 +97,7 @@ pub(super) fn thinned(curve: &[Point], most: usize) -> (Vec<usize>, f64) {
                 ((interpolated(&ends, 0, strain) / stress - 1.0).abs(), row)
             })
         });
-        match between.max_by(|a, b| a.0.total_cmp(&b.0)) {
+        match between.largest_by(|(deviation, _)| *deviation) {
             Some((deviation, row)) if deviation > TOLERANCE && kept.len() < most => {
                 kept.push(row);
                 kept.sort_unstable();

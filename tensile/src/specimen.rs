@@ -20,7 +20,7 @@ use crate::record::{Exclusion, ReadColumn, Record, RecordRow, within};
 use crate::regression::Regression;
 use serde::Serialize;
 use std::path::PathBuf;
-use support::{Fault, Point, fault};
+use support::{Extremes, Fault, Point, fault};
 
 /// What is known about the material or its specimens besides the records.
 #[derive(Clone, Copy, Debug, Default)]
@@ -157,7 +157,7 @@ impl Specimen {
             softening: (ended == SpecimenEnd::Neck)
                 .then(|| Softening { rows: end - last, ends: [last, end].map(|row| smooth[row]) }),
             after: draw.map_or(Vec::new(), |draw| second_part(&smooth[..=last], &draw, young)),
-            strength: nominal.iter().map(|row| row[1]).fold(0.0, f64::max),
+            strength: nominal.iter().map(|row| row[1]).largest(),
             nominal: used.map(|&[e, s]| [curve.corrected(e, s), s]).collect(),
             toe: curve.linear.toe,
             linear: curve.linear,
@@ -292,7 +292,7 @@ fn linear_part(curve: &mut [Point], record: &Record, noise: [f64; 2]) -> Option<
 /// Half the number of rows over which the stress is smoothed, from its noise; few enough to leave
 /// the yield peak.
 fn half_window(curve: &[Point], noise: f64) -> usize {
-    let maximum = curve.iter().map(|row| row[1]).fold(0.0, f64::max);
+    let maximum = curve.iter().map(|row| row[1]).largest();
     let rise = curve.iter().position(|row| row[1] >= 0.5 * maximum);
     let needed = 0.5 * (noise / (SMOOTH * maximum).max(f64::MIN_POSITIVE)).powi(2);
     (needed as usize).min(rise.unwrap_or(0) / 4)

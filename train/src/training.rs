@@ -22,7 +22,7 @@ use std::collections::BTreeSet;
 use std::f64::consts::PI;
 use std::path::Path;
 use std::time::Instant;
-use support::{Fault, fault};
+use support::{Extremes, Fault, fault};
 use surrogate::{Card, FORMAT_VERSION, Surrogate, TestErrors, UNITS, feature_names};
 
 /// A trained surrogate with its history and test errors.
@@ -201,7 +201,7 @@ impl Training {
         let errors = validation.network_errors();
         let better = [0, 1, 2].map(|network| {
             let before = self.history.iter().map(|epoch| epoch.validation_errors[network]);
-            errors[network] < before.fold(f64::INFINITY, f64::min)
+            errors[network] < before.smallest()
         });
         // The networks have no common layers, and the damage heads overfit earlier. Without a known
         // error, the network of the last epoch is kept.

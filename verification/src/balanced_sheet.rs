@@ -22,7 +22,7 @@ use mesher::Tier;
 use scene::Scene;
 use serde::Serialize;
 use std::sync::Arc;
-use support::refuse;
+use support::{Extremes, ensure, refuse};
 
 /// Largest movement of a panel corner in a round, relative to the size of the deployed sheet, at
 /// which the iteration ends: a tenth of a millimetre in a metre.
@@ -106,9 +106,7 @@ pub fn balanced(
 ) -> Result<(Balanced, DesignProblem), VerificationError> {
     let draft = windows.tier.draft().map(|tier| (tier, DRAFT_ROUNDS));
     let meshes: Vec<_> = draft.into_iter().chain([(windows.tier, rounds)]).collect();
-    if rounds == 0 {
-        refuse!("at least one round is needed");
-    }
+    ensure!(rounds > 0, "at least one round is needed");
     let mut problem = scene.problem()?;
     let law = law_of(&mut problem)?.clone();
     let deployed = problem.deploy(design)?;
@@ -265,7 +263,7 @@ impl Iteration<'_> {
         *law_of(&mut self.problem)? = Arc::new(CorrectedLaw { law: self.law.clone(), corrections });
         let next = self.problem.deploy(self.design)?;
         next.at_full_load()?;
-        let movement = movements(deployed, &next).into_iter().fold(0.0, f64::max);
+        let movement = movements(deployed, &next).into_iter().largest();
         Ok((next, movement))
     }
 

@@ -7,6 +7,7 @@ use fe_driver::SheetSurface;
 use mesher::{Panels, Tier};
 use scene::Posture;
 use serde::Serialize;
+use support::Extremes;
 use support::severity::{Finding, Severity};
 
 /// Difference of the loads over the load by finite elements above which a finding names it.
@@ -188,9 +189,7 @@ pub(crate) fn findings(check: &SheetCheck) -> Vec<Finding> {
 /// Whether a sheet of a size (mm) is flat, by the rule of a design, where it is least so: on the
 /// way or at the end.
 fn flatness(support: Posture, size: f64, path: &[StateCheck]) -> Option<Finding> {
-    let most = |value: fn(&StateCheck) -> f64| {
-        path.iter().max_by(|one, other| value(one).total_cmp(&value(other)))
-    };
+    let most = |value: fn(&StateCheck) -> f64| path.iter().largest_by(|state| value(state));
     let tilted = most(|state| state.tilt_deg)?;
     let off = most(|state| state.corners[0])?;
     let [rms, largest] = off.corners;

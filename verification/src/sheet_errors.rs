@@ -8,6 +8,7 @@ use design::hinge_law::DamageMeasure;
 use design::objective::design_problem::Deployment;
 use mesher::Tier;
 use serde::Serialize;
+use support::Joined;
 use support::document::Document;
 use support::statistics::rms_and_maximum;
 use support::table::{Cell, Columns, Table};
@@ -143,10 +144,9 @@ impl SheetErrors {
         self.add_errors(&mut page);
         self.add_unsolved(&mut page);
         if !self.outside.is_empty() {
-            let hinges: Vec<String> = self.outside.iter().map(usize::to_string).collect();
+            let hinges = self.outside.iter().map(usize::to_string).joined(", ");
             page.text(format!(
-                "Outside the training domain: hinge {}. The law has a return force there that finite elements do not have.",
-                hinges.join(", ")
+                "Outside the training domain: hinge {hinges}. The law has a return force there that finite elements do not have."
             ));
         }
         let degrees = |i: usize| move |hinge: &HingeErrors| Cell::fixed(hinge.theta_deg[i], 2);
@@ -197,14 +197,10 @@ impl SheetErrors {
         }
         page.table(table);
         let factors = self.errors.iter();
-        let factors: Vec<String> = factors
+        let factors = factors
             .map(|errors| format!("{:.4} by `{}`", errors.load_factor, errors.tier))
-            .collect();
-        page.text(format!(
-            "Load factor {:.4} by the law, {}.",
-            self.load_factor,
-            factors.join(", ")
-        ));
+            .joined(", ");
+        page.text(format!("Load factor {:.4} by the law, {factors}.", self.load_factor));
     }
 
     /// The hinges that were not solved, round by round, and what is not known for it.

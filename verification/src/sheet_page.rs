@@ -2,9 +2,9 @@
 
 use crate::sheet_check::{HingeCheck, PanelCheck, SheetCheck, StateCheck};
 use mesher::Panels;
-use support::document::Document;
 use support::statistics::median;
 use support::table::{Cell, Columns, Table};
+use support::{Extremes, document::Document};
 
 /// Number of rows of a path on the page.
 const ROWS: usize = 12;
@@ -84,7 +84,7 @@ impl SheetCheck {
             if forces.is_empty() {
                 return "not known".to_owned();
             }
-            let largest = forces.iter().copied().fold(0.0, f64::max);
+            let largest = forces.iter().copied().largest();
             format!("median {:.3} N, largest {largest:.3} N", median(forces.clone()))
         });
         format!("Forces of supports: {by_elements}; by law {by_law}.")

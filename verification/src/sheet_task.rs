@@ -20,7 +20,7 @@ use scene::{Posture, Scene};
 use std::array::from_fn;
 use std::iter::zip;
 use support::statistics::rms_and_maximum;
-use support::{Point, fault};
+use support::{Extremes, Point, fault};
 
 /// Tilt of a panel up to which its flanks are measured in the plane (rad).
 const UPRIGHT: f64 = 0.02;
@@ -116,12 +116,10 @@ impl SheetTask {
             contact: self.contact,
             size: sheet.outline.size(),
             radius: [
-                (problem.shape.windows.iter())
-                    .map(|window| window.design.r_win)
-                    .fold(f64::INFINITY, f64::min),
+                (problem.shape.windows.iter()).map(|window| window.design.r_win).smallest(),
                 sheet.options.process.r_win,
             ],
-            slenderness: [widths.clone().fold(f64::INFINITY, f64::min), widths.fold(0.0, f64::max)],
+            slenderness: [widths.clone().smallest(), widths.largest()],
             outside: (0..sheet.hinges.len())
                 .filter(|h| self.deployment.path.iter().any(|step| !step.inside[*h]))
                 .collect(),
@@ -267,7 +265,7 @@ impl SheetTask {
             let r_win = distance(corners[corner], corners[(corner + 3) % 4]);
             flank_gap(&HingeDesign { r_win, ..design }, &state, regime(&design))
         });
-        gaps.fold(f64::INFINITY, f64::min)
+        gaps.smallest()
     }
 
     /// Rotation of a hinge in the plane by finite elements (rad).
@@ -301,7 +299,7 @@ impl SheetTask {
         let panels = panels.map(|(number, (panel, errors))| PanelCheck {
             panel: number,
             tilt_deg: panel.tilt().to_degrees(),
-            off: errors.into_iter().fold(0.0, f64::max),
+            off: errors.into_iter().largest(),
             z: panel.z,
             bending: panel.bending,
         });

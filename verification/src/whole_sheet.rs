@@ -13,7 +13,7 @@ use mesher::{
 };
 use scene::{Posture, PostureConfig, Scene, SupportKind};
 use std::iter::zip;
-use support::{Fault, fault, refuse};
+use support::{Extremes, Fault, ensure, fault, refuse};
 
 /// Size of the elements of panels over r_win.
 const ELEMENT_SIZE: f64 = 0.8;
@@ -122,12 +122,11 @@ fn pulled(scene: &Scene, sheet: &Sheet) -> Result<Vec<Pulled>, VerificationError
     for load in scene.actuation().boundary_loads() {
         loads[load.panel][load.dof.index()] += load.value;
     }
-    if loads.iter().any(|[.., couple]| *couple != 0.0) {
-        refuse!(
-            "couples on panels have no counterpart in a whole sheet of finite elements, whose \
+    ensure!(
+        loads.iter().all(|[.., couple]| *couple == 0.0),
+        "couples on panels have no counterpart in a whole sheet of finite elements, whose \
              panels bend: pull panels by forces"
-        );
-    }
+    );
     let forces = loads.into_iter().enumerate();
     let forces = forces.filter(|(_, [x, y, _])| x.hypot(*y) > 0.0);
     let pulled = forces.map(|(panel, [x, y, _])| Pulled {
@@ -143,12 +142,11 @@ fn held(scene: &Scene, sheet: &Sheet) -> Result<Vec<HeldPanel>, VerificationErro
     let attachments = scene.actuation().attachments;
     let supports = zip(&scene.config.supports, &attachments);
     let held = supports.map(|(support, attachment)| {
-        if support.rotation_deg != 0.0 {
-            refuse!(
-                "{}: a support that turns has no counterpart in a whole sheet of finite elements",
-                attachment.name
-            );
-        }
+        ensure!(
+            support.rotation_deg == 0.0,
+            "{}: a support that turns has no counterpart in a whole sheet of finite elements",
+            attachment.name
+        );
         let holds = support.kind.holds();
         Ok(HeldPanel {
             panel: attachment.panel,
@@ -186,7 +184,7 @@ fn place(sheet: &Sheet, attachment: &AttachmentPoint, kind: SupportKind) -> Plac
 pub(crate) fn meshed_radii(sheet: &Sheet) -> Result<Vec<f64>, VerificationError> {
     let r_win = sheet.options.process.r_win;
     let widths = || sheet.hinges.iter().map(|hinge| hinge.w_lig);
-    let mut ratio = r_win / widths().fold(f64::INFINITY, f64::min);
+    let mut ratio = r_win / widths().smallest();
     loop {
         let radii: Vec<f64> = widths().map(|w_lig| r_win.min(ratio * w_lig)).collect();
         let windows: Vec<HingeWindow> = zip(HingeWindow::of_sheet(sheet), &radii)
@@ -195,19 +193,18 @@ pub(crate) fn meshed_radii(sheet: &Sheet) -> Result<Vec<f64>, VerificationError>
         let apart = (windows.iter().enumerate())
             .all(|(h, one)| windows[..h].iter().all(|other| !one.overlaps(other)));
         let inside = zip(&windows, &sheet.hinges).all(|(window, hinge)| {
-            let [a, b] = [hinge.panel_a(), hinge.panel_b()].map(|k| &sheet.panels[k]);
+            let [a, b] = hinge.panels().map(|k| &sheet.panels[k]);
             window.within(a, b)
         });
         if apart && inside {
             return Ok(radii);
         }
-        if ratio <= LEAST_RADIUS {
-            refuse!(
-                "the panels are too small for windows of {:.1} mm radius, the smallest that are \
+        ensure!(
+            ratio > LEAST_RADIUS,
+            "the panels are too small for windows of {:.1} mm radius, the smallest that are \
                  meshed: use larger panels or narrower ligaments",
-                radii.into_iter().fold(f64::INFINITY, f64::min)
-            );
-        }
+            radii.into_iter().smallest()
+        );
         ratio = (SHRINK * ratio).max(LEAST_RADIUS);
     }
 }
@@ -226,7 +223,7 @@ fn sheet_shape(
         );
     };
     let radii = meshed_radii(sheet)?;
-    let smallest = radii.iter().copied().fold(f64::INFINITY, f64::min);
+    let smallest = radii.iter().copied().smallest();
     let windows = zip(HingeWindow::of_sheet(sheet), &radii);
     let finished: Vec<_> =
         (0..sheet.panels.len()).map(|panel| FinishedPanel::new(sheet, panel)).collect();

@@ -4,12 +4,13 @@ use super::{
     axes::{Axis, Look, chart, series},
     *,
 };
+use support::Extremes;
 
 /// Training and validation loss against the epoch, the loss on a logarithmic axis.
 pub fn learning_curve(training: &[f64], validation: &[f64]) -> Result<String> {
     let positive = || training.iter().chain(validation).copied().filter(|loss| *loss > 0.0);
-    let min = positive().fold(f64::INFINITY, f64::min);
-    let max = positive().fold(0.0, f64::max);
+    let min = positive().smallest();
+    let max = positive().largest();
     let epochs = Axis {
         range: 0.0..training.len().max(2) as f64 - 1.0,
         name: "epoch",

@@ -5,6 +5,7 @@ use super::{
     axes::{Axis, Look, Series, chart, series},
     *,
 };
+use support::Extremes;
 use tensile::{HardeningRow, MaterialFit, Origin, Specimen};
 
 /// Maximum number of points of a drawn curve; a record may have a hundred thousand.
@@ -55,8 +56,8 @@ fn small_strains(area: &Area, fit: &MaterialFit) -> ChartResult {
 /// The whole records, with upper yield, plateau and natural draw ratio.
 fn records(area: &Area, fit: &MaterialFit, name: &str) -> ChartResult {
     let rows = || fit.specimens.iter().flat_map(|specimen| &specimen.nominal);
-    let end = 100.0 * rows().map(|row| row[0]).fold(0.0, f64::max);
-    let top = 1.25 * rows().map(|row| row[1]).fold(0.0, f64::max);
+    let end = 100.0 * rows().map(|row| row[0]).largest();
+    let top = 1.25 * rows().map(|row| row[1]).largest();
     let strain = Axis::new(-0.02 * end..1.03 * end, "strain, %");
     let axes = (strain, Axis::new(0.0..top, "stress, MPa"));
     let mut all = record_series(&fit.specimens, [-end, end]);
@@ -83,7 +84,7 @@ fn records(area: &Area, fit: &MaterialFit, name: &str) -> ChartResult {
 /// The hardening curve by its origin, the rows of the table, and the fracture strain.
 fn hardening(area: &Area, fit: &MaterialFit) -> ChartResult {
     let end = 1.05 * fit.fracture_strain.max(fit.curve[fit.curve.len() - 1].strain);
-    let top = 1.25 * fit.curve.iter().map(|row| row.stress).fold(0.0, f64::max);
+    let top = 1.25 * fit.curve.iter().map(|row| row.stress).largest();
     let strain = Axis::new(-0.02 * end..1.02 * end, "true plastic strain");
     let stress = Axis::new(0.0..top, "true stress, MPa");
     let mut all = Vec::new();

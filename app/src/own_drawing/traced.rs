@@ -16,7 +16,7 @@ use image::{
     guess_format,
 };
 use std::{f64::consts::PI, fmt::Write, io::Cursor};
-use support::{Fault, at, ensure, statistics::median};
+use support::{Extremes, Fault, at, ensure, statistics::median};
 
 /// Pixels along the longer side of a picture that is traced; a larger one is reduced.
 const PIXELS: u32 = 1000;
@@ -67,10 +67,10 @@ pub(super) fn traced(picture: &[u8], threshold: Option<f64>) -> Result<Traced, F
     let mut differences = vec![0.0; columns * rows];
     for (x, y, pixel) in pixels.enumerate_pixels() {
         let by_channel = std::iter::zip(seen(pixel), ground);
-        let most = by_channel.map(|(own, ground)| (own - ground).abs()).fold(0.0, f64::max);
+        let most = by_channel.map(|(own, ground)| (own - ground).abs()).largest();
         differences[(y as usize + 1) * columns + x as usize + 1] = most;
     }
-    let most = differences.iter().copied().fold(0.0, f64::max);
+    let most = differences.iter().copied().largest();
     ensure!(
         most > FAINT,
         "nothing in the picture differs from its border: it has to be a shape on a ground of one colour"

@@ -21,6 +21,7 @@ use std::{
     path::{Path, PathBuf},
     sync::atomic::Ordering,
 };
+use support::Extremes;
 use support::table::{Cell, Table};
 use surrogate::Surrogate;
 
@@ -128,7 +129,7 @@ impl Seeds<'_> {
         let members = self.configs.iter().map(|config| self.continued(config, false));
         let members: Vec<Trained> = members.collect::<Result<_>>()?;
         let errors = members.iter().map(validation_error).enumerate();
-        let best = errors.min_by(|(_, left), (_, right)| left.total_cmp(right));
+        let best = errors.smallest_by(|(_, error)| *error);
         let (best, _) = best.context("`--seeds` must be at least 1")?;
         let mut table = Table::new(COLUMNS);
         for (place, (config, member)) in self.configs.iter().zip(&members).enumerate() {

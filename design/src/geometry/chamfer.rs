@@ -9,7 +9,7 @@
 //! spacing of the samples.
 
 use crate::geometry::polygon::nearest_on_outline;
-use support::Point;
+use support::{Extremes, Point};
 
 /// The distance (mm^2) with the weight w_cov of the second sum, and its gradient in `points`;
 /// neither `points` nor `target` may be empty.
@@ -25,7 +25,7 @@ pub fn chamfer(points: &[Point], target: &[Point], coverage_weight: f64) -> (f64
     let coverage = coverage_weight / target.len() as f64;
     for &t in target {
         let distances = points.iter().map(|p| squared(*p, t)).enumerate();
-        if let Some((k, distance)) = distances.min_by(|a, b| a.1.total_cmp(&b.1)) {
+        if let Some((k, distance)) = distances.smallest_by(|(_, distance)| *distance) {
             pull(&mut gradient[k], coverage, points[k], t);
             value += coverage * distance;
         }

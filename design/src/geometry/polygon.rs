@@ -3,7 +3,7 @@
 
 use crate::geometry::plane::{complex, cross, dot, point};
 use faer::c64;
-use support::Point;
+use support::{Extremes, Point};
 
 /// The intersection of two convex polygons.
 pub fn common(polygon: &[Point], other: &[Point]) -> Vec<Point> {
@@ -51,7 +51,7 @@ pub fn distance_to_polygon(point: Point, polygon: &[Point]) -> f64 {
     if !polygon.is_empty() && contains(polygon, point) {
         return 0.0;
     }
-    edges(polygon).map(|(p, q)| distance_to_segment(point, p, q)).fold(f64::INFINITY, f64::min)
+    edges(polygon).map(|(p, q)| distance_to_segment(point, p, q)).smallest()
 }
 
 /// Distance from a point, inside or outside, to the outline of a polygon with at least one corner
@@ -128,7 +128,7 @@ pub fn nearest_on_outline(point: Point, polygon: &[Point]) -> Point {
         let foot = nearest_on_segment(point, a, b);
         (vector(point, foot).norm_sqr(), foot)
     });
-    let nearest = feet.min_by(|p, q| p.0.total_cmp(&q.0));
+    let nearest = feet.smallest_by(|(square, _)| *square);
     nearest.map_or(point, |(_, foot)| foot)
 }
 

@@ -8,7 +8,7 @@ use i_overlay::float::single::SingleFloatOverlay;
 use i_overlay::mesh::float::outline::offset::OutlineOffset;
 use i_overlay::mesh::float::style::{LineJoin, OutlineStyle};
 use std::f64::consts::FRAC_PI_8;
-use support::Point;
+use support::{Extremes, Point};
 
 /// Angle of the pieces of an arc (rad).
 const ARC: f64 = 0.2;
@@ -174,7 +174,7 @@ fn simplified(contour: &[Point], tolerance: f64, fixed: impl Fn(Point) -> bool) 
     let mut ends: Vec<usize> = all.clone().filter(|i| fixed(contour[*i])).collect();
     let first = *ends.first().unwrap_or(&0);
     let from_first = |i: &usize| polygon::distance(contour[*i], contour[first]);
-    let Some(far) = all.max_by(|i, j| from_first(i).total_cmp(&from_first(j))) else {
+    let Some(far) = all.largest_by(from_first) else {
         return Ring::new();
     };
     ends.extend([first, far]);
@@ -193,7 +193,7 @@ fn simplified(contour: &[Point], tolerance: f64, fixed: impl Fn(Point) -> bool) 
 fn keep(line: &[Point], tolerance: f64, kept: &mut Ring) {
     let (first, last) = (line[0], line[line.len() - 1]);
     let off = |i: &usize| polygon::distance_to_segment(line[*i], first, last);
-    let farthest = (1..line.len() - 1).max_by(|i, j| off(i).total_cmp(&off(j)));
+    let farthest = (1..line.len() - 1).largest_by(off);
     match farthest.filter(|i| off(i) > tolerance) {
         Some(i) => {
             keep(&line[..=i], tolerance, kept);

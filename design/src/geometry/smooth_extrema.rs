@@ -6,9 +6,11 @@
 //!
 //! which lies within the range of the values. tau = 0 gives the hard extremum.
 
+use support::Extremes;
+
 /// max^tau and its gradient; (0, []) for no values.
 pub fn smooth_max(values: &[f64], temperature: f64) -> (f64, Vec<f64>) {
-    let Some((index, &max)) = (values.iter().enumerate()).max_by(|a, b| a.1.total_cmp(b.1)) else {
+    let Some((index, &max)) = (values.iter().enumerate()).largest_by(|(_, value)| **value) else {
         return (0.0, Vec::new());
     };
     if temperature <= 0.0 {

@@ -7,7 +7,7 @@ use crate::{
     },
     sheet::{cut_sheet::Sheet, kinematics::deployed_boundaries},
 };
-use support::Point;
+use support::{Extremes, Point};
 
 /// [`overlap`] from which panels lie over each other: more than a slit and rounding leave.
 pub const OVERLAP: f64 = 0.01;
@@ -20,7 +20,7 @@ pub fn overlap(sheet: &Sheet, configuration: &[[f64; 3]]) -> f64 {
     let shared = if sheet.topology.is_full() {
         let neighbours = neighbours(sheet);
         let shared = neighbours.map(|(one, other)| area(&common(&deployed[one], &deployed[other])));
-        shared.fold(0.0, f64::max)
+        shared.largest()
     } else {
         most_shared(deployed)
     };
@@ -48,5 +48,5 @@ fn most_shared(polygons: Vec<Ring>) -> f64 {
         let others = regions[..i].iter().filter(move |(other, _)| met(bounds, other));
         others.map(|(_, other)| one.common(other).area())
     });
-    shared.fold(0.0, f64::max)
+    shared.largest()
 }

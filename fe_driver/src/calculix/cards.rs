@@ -3,7 +3,7 @@
 
 use crate::{DeformationPath, StepControl};
 use hinge::{HingeDeformation, SheetMaterial};
-use support::{Point, add_line};
+use support::{Joined, Point, add_line};
 
 /// A number in a format that ccx reads: a field has 20 characters, and this format uses at most 19.
 pub(crate) fn real(x: f64) -> String {
@@ -23,8 +23,8 @@ pub(crate) fn write_element(d: &mut String, element: usize, nodes: &[usize]) {
     let numbers = [element].into_iter().chain(nodes.iter().copied());
     let numbers: Vec<String> = numbers.map(|number| (number + 1).to_string()).collect();
     // A line has at most 16 entries.
-    let lines: Vec<String> = numbers.chunks(16).map(|line| line.join(",")).collect();
-    add_line!(d, "{}", lines.join(",\n"));
+    let lines = numbers.chunks(16).map(|line| line.join(",")).joined(",\n");
+    add_line!(d, "{lines}");
 }
 
 /// A set of nodes (NSET) or elements (ELSET), unless it is empty.

@@ -12,8 +12,8 @@ use crate::{
 use hinge::SheetMaterial;
 use mesher::{WindowMesh, vtk_grid};
 use std::iter::zip;
-use support::add_line;
 use support::vtk::{Field, UnstructuredGrid};
+use support::{Extremes, add_line};
 
 /// The deck that drives the window along its path.
 pub fn deck(model: &WindowModel) -> String {
@@ -113,7 +113,7 @@ impl WindowModel<'_> {
         let stresses: Vec<[f64; 6]> = zip(frame.stress.chunks(points), volumes())
             .map(|(stress, volumes)| VTK_ORDER.map(|c| mean(&|i| stress[i][c], volumes)))
             .collect();
-        let most = || strains().map(|strain| strain.iter().copied().fold(0.0, f64::max));
+        let most = || strains().map(|strain| strain.iter().copied().largest());
         let fracture = self.material.fracture_strain;
         let displacements = frame.displacements.iter().copied();
         UnstructuredGrid {

@@ -9,7 +9,7 @@ use mesher::Tier;
 use serde::Serialize;
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::path::Path;
-use support::refuse;
+use support::{Extremes, refuse};
 
 /// Numbers of jobs in each state, with their total cost.
 #[derive(Debug, Default, Serialize)]
@@ -281,7 +281,7 @@ pub fn plan(
     let tiers = || to_run.iter();
     Ok(Plan {
         seconds: tiers().map(|tier| tally.seconds_a_job(*tier, &campaign.material)).sum(),
-        memory_mb: tiers().map(|tier| tier.usual_memory_mb()).fold(0.0, f64::max),
+        memory_mb: tiers().map(|tier| tier.usual_memory_mb()).largest(),
         disk_mb: JOB_MB * to_run.len() as f64,
         tally,
         reasons,

@@ -8,6 +8,7 @@ use faer::mat::Mat;
 use mesher::MeshPart;
 use std::array::from_fn;
 use std::iter::zip;
+use support::Extremes;
 
 /// Freedoms of a node.
 const FREEDOMS: usize = 3;
@@ -95,8 +96,7 @@ impl SheetModel<'_> {
         let (before, after): (Vec<_>, Vec<_>) =
             self.mesh.panels[panel].iter().map(|node| self.position(frame, *node).into()).unzip();
         let motion = RigidMotion::fitted(&before, &after);
-        let bending =
-            zip(&before, &after).map(|(p, q)| motion.left(*p, *q)[2].abs()).fold(0.0, f64::max);
+        let bending = zip(&before, &after).map(|(p, q)| motion.left(*p, *q)[2].abs()).largest();
         let mut state = PanelState {
             centre: motion.from,
             shift: [0, 1, 2].map(|i| motion.to[i] - motion.from[i]),
@@ -133,7 +133,7 @@ impl SheetModel<'_> {
         let strain = |face| {
             let above = (face..self.mesh.elements.len()).step_by(faces.len());
             let strains = above.flat_map(|element| frame.peeq[element].iter().copied());
-            strains.fold(0.0, f64::max)
+            strains.largest()
         };
         let mut surface = SheetSurface {
             points: self.mesh.middle.iter().map(|node| self.mesh.nodes[*node]).collect(),

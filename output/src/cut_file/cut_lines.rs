@@ -38,7 +38,7 @@ use design::{
 };
 use scene::{CuttingConfig, Scene};
 use std::collections::BTreeMap;
-use support::{Fault, Point, ensure};
+use support::{Extremes, Fault, Point, ensure};
 
 /// The least 1 + cos of the turn of an outline at a corner that moves in full with its edges.
 const SHARPEST: f64 = 0.1;
@@ -280,7 +280,7 @@ impl CutLines {
                 distance_to_segment(tip, slit.ends[0], slit.ends[1]) - 0.5 * self.slit_width
             });
         let to_outline = self.outline_edges().map(|[p, q]| distance_to_segment(tip, p, q));
-        to_slits.chain(to_outline).fold(f64::INFINITY, f64::min)
+        to_slits.chain(to_outline).smallest()
     }
 }
 

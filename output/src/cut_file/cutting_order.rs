@@ -9,7 +9,7 @@ use crate::{
     display::Shape,
 };
 use design::geometry::polygon::distance;
-use support::Point;
+use support::{Extremes, Point};
 
 /// Maximum number of cuts in a run that is reversed: it bounds the time of a sweep over large
 /// sheets.
@@ -53,8 +53,8 @@ impl Shape {
     /// Begins a polygon or a contour at its corner nearest to a point.
     fn begin_near(&mut self, point: Point) {
         let nearest = |count: usize, at: &dyn Fn(usize) -> Point| {
-            let off = |i: usize| distance(at(i), point);
-            let nearest = (0..count).min_by(|&i, &j| off(i).total_cmp(&off(j)));
+            let off = |i: &usize| distance(at(*i), point);
+            let nearest = (0..count).smallest_by(off);
             nearest.unwrap_or_default()
         };
         match self {
@@ -103,7 +103,7 @@ fn nearest_neighbours(legs: &[Leg], from: Point) -> Vec<Leg> {
     let mut tour = Vec::with_capacity(legs.len());
     while !left.is_empty() {
         let to = |leg: &Leg| distance(at, leg.1[0]).min(distance(at, leg.1[1]));
-        let nearest = (0..left.len()).min_by(|&i, &j| to(&left[i]).total_cmp(&to(&left[j])));
+        let nearest = (0..left.len()).smallest_by(|leg| to(&left[*leg]));
         let (i, [a, b]) = left.swap_remove(nearest.unwrap_or_default());
         let ends = if distance(at, b) < distance(at, a) { [b, a] } else { [a, b] };
         at = ends[1];

@@ -16,7 +16,7 @@ use design::geometry::{
 };
 use scene::drawing::bulged::Vertex;
 use std::f64::consts::PI;
-use support::Point;
+use support::{Extremes, Point};
 
 impl CutLines {
     /// Adds the contours that a tool of the given kerf (mm) follows with its centre, half of that
@@ -103,7 +103,7 @@ fn notched(outlines: &[Ring], open: &[SlitEnd]) -> Vec<Vec<Vertex>> {
     for end in open {
         // The side on which the slit ends.
         let off = |&[p, q]: &[Point; 2]| distance_to_segment(end.towards, p, q);
-        let nearest = (0..sides.len()).min_by(|&i, &j| off(&sides[i]).total_cmp(&off(&sides[j])));
+        let nearest = (0..sides.len()).smallest_by(|side| off(&sides[*side]));
         let at = nearest.expect("an outline has sides");
         let [first, second] = end.on_edge(sides[at]);
         // Into the sheet, clockwise around the hole, and out.

@@ -7,7 +7,7 @@ use design::geometry::{
     polygon::{distance_between_segments, distance_to_outline},
     region::Ring,
 };
-use support::{Fault, Point, ensure};
+use support::{Extremes, Fault, Point, ensure};
 
 /// A cut with the width of the tool: the points nearer than `radius` to the segment `ends`, which
 /// is a point for a hole.
@@ -22,7 +22,7 @@ pub(super) struct Cut {
 pub(super) fn check(mut cuts: Vec<Cut>, outlines: &[Ring], least: f64) -> Result<(), Fault> {
     for hole in cuts.iter().filter(|cut| cut.ends[0] == cut.ends[1]) {
         let to_outlines = outlines.iter().map(|outline| distance_to_outline(hole.ends[0], outline));
-        let gap = to_outlines.fold(f64::INFINITY, f64::min) - hole.radius;
+        let gap = to_outlines.smallest() - hole.radius;
         ensure!(
             gap >= least,
             "the hole of hinge {} leaves {gap:.3} mm to the outline, less than a slit of {least} mm: move the cut \

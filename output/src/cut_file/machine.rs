@@ -8,7 +8,7 @@ use crate::cut_file::{
 use design::geometry::polygon::{bounds, distance_to_outline, size};
 use serde::{Deserialize, Serialize};
 use std::{fmt, path::Path};
-use support::{Fault, ensure, refuse, toml_file};
+use support::{Extremes, Fault, ensure, refuse, toml_file};
 
 /// The shipped table.
 const SHIPPED: &str = include_str!("../../../configs/machines.toml");
@@ -200,10 +200,10 @@ pub(crate) fn fits(part: [f64; 2], place: [f64; 2]) -> bool {
 impl CutLines {
     /// The smallest features of the sheet.
     pub fn features(&self) -> Features {
-        let least = |values: &mut dyn Iterator<Item = f64>| values.fold(f64::INFINITY, f64::min);
+        let least = |values: &mut dyn Iterator<Item = f64>| values.smallest();
         let to_edge = |centre: [f64; 2]| {
             let all = self.outlines.iter().map(|outline| distance_to_outline(centre, outline));
-            all.fold(f64::INFINITY, f64::min)
+            all.smallest()
         };
         let attached = (self.attachments.iter())
             .filter_map(|attachment| Some((attachment.at, 0.5 * attachment.hole?)));

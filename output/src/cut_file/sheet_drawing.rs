@@ -12,6 +12,7 @@ use crate::{
 };
 use design::{geometry::polygon::size, sheet::cut_sheet::Sheet};
 use hinge::SheetMaterial;
+use support::Joined;
 
 /// Height of the instructions relative to the size of the sheet, and its minimum (mm).
 const NOTE_HEIGHT: f64 = 0.012;
@@ -43,7 +44,7 @@ impl SheetDrawing {
         }
         let (kerf, slit) = (cuts.kerf(), cuts.slit_width);
         let layers = numbered.layers().filter(|layer| layer.is_cut()).map(Layer::name);
-        let order = layers.collect::<Vec<_>>().join(", ");
+        let order = layers.joined(", ");
         let [paths, ends] = if cuts.is_one_pass(kerf) {
             [
                 "CUT is one pass of the tool; HOLES and OUTLINE are paths of its centre".to_owned(),

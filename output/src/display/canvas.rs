@@ -7,7 +7,7 @@ use crate::display::{
 use design::geometry::polygon::{distance, size};
 use scene::drawing::bulged::{Vertex, centre};
 use std::fmt::Write;
-use support::Point;
+use support::{Joined, Point};
 
 /// Height of the capitals of DejaVu Sans, relative to the size of the font.
 const CAPITALS: f64 = 0.729;
@@ -114,9 +114,7 @@ pub(crate) fn group<'a>(
 fn element(shape: &Shape, attributes: &str) -> String {
     let points = |points: &[Point]| {
         let points = points.iter();
-        let pairs: Vec<String> =
-            points.map(|[x, y]| format!("{},{}", number(*x), number(-y))).collect();
-        pairs.join(" ")
+        points.map(|[x, y]| format!("{},{}", number(*x), number(-y))).joined(" ")
     };
     let element = match shape {
         Shape::Line([from, to]) => format!(

@@ -9,11 +9,12 @@ use design::sheet::{
     cut_sheet::{Hinge, Sheet},
     hinge_window::HingeWindow,
 };
+use support::Extremes;
 
 /// The flat sheet with its cuts.
 pub fn flat(title: &str, sheet: &Sheet, cuts: &CutLines) -> String {
     let widths = sheet.hinges.iter().map(|hinge| hinge.w_lig);
-    let (min, max) = (widths.clone().fold(f64::INFINITY, f64::min), widths.fold(0.0, f64::max));
+    let (min, max) = (widths.clone().smallest(), widths.largest());
     let subtitle = format!(
         "Flat cut pattern: {} \u{d7} {} panels, {} hinges, ligaments {min:.1} to {max:.1} mm",
         sheet.topology.grid.m,

@@ -12,7 +12,7 @@ use design::{
 };
 use scene::{Scene, placement::placed};
 use std::f64::consts::PI;
-use support::Point;
+use support::{Extremes, Point};
 
 /// Half the size of the symbol of a support, in units of the picture, as the lengths below.
 const SUPPORT: f64 = 9.0;
@@ -43,7 +43,7 @@ impl PanelLoad {
         for load in scene.actuation().boundary_loads() {
             sums[load.panel][load.dof.index()] += step.load_factor * load.value;
         }
-        let most = |of: fn(&[f64; 3]) -> f64| sums.iter().map(of).fold(0.0, f64::max);
+        let most = |of: fn(&[f64; 3]) -> f64| sums.iter().map(of).largest();
         let (force, couple) = (most(|[x, y, _]| x.hypot(*y)), most(|[.., moment]| moment.abs()));
         let kept = |value: f64, size: f64, largest: f64| {
             if size > NEGLIGIBLE * largest { value } else { 0.0 }
@@ -79,7 +79,7 @@ pub(super) fn draw(canvas: &mut Canvas, scene: &Scene, sheet: &Sheet, step: &Loa
     supports(canvas, scene, sheet, step);
     let unit = canvas.unit;
     let loads = PanelLoad::on_panels(scene, sheet, step);
-    let largest = loads.iter().map(PanelLoad::size).fold(0.0, f64::max);
+    let largest = loads.iter().map(PanelLoad::size).largest();
     let mut labelled: Vec<String> = Vec::new();
     let mut label = |canvas: &mut Canvas, key: String, [x, y]: Point, text: &str| {
         if !labelled.contains(&key) {

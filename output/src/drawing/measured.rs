@@ -15,7 +15,7 @@ use design::{
     geometry::polygon::{bounds, size},
     sheet::{cut_sheet::Sheet, kinematics::deployed_boundaries},
 };
-use support::Point;
+use support::{Extremes, Point};
 
 /// Magnifications of the residuals.
 const MAGNIFICATIONS: [f64; 8] = [1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0];
@@ -64,7 +64,7 @@ pub fn measured(sheet: &Sheet, fit: &Fit, report: &MeasurementReport) -> String 
 
 /// The largest magnification at which no residual of the fit is longer than a part of a panel.
 fn magnification(fit: &Fit, panel_size: f64) -> f64 {
-    let longest = fit.points.iter().map(FittedPoint::distance).fold(0.0, f64::max);
+    let longest = fit.points.iter().map(FittedPoint::distance).largest();
     let fits = |factor: &&f64| *factor * longest <= LONGEST * panel_size;
     *MAGNIFICATIONS.iter().rev().find(fits).unwrap_or(&1.0)
 }

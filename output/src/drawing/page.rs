@@ -9,7 +9,7 @@ use design::{
     },
     sheet::{cut_sheet::Sheet, hinge_window::HingeWindow, topology::Topology},
 };
-use support::Point;
+use support::{Extremes, Point};
 
 /// Colour of main lines and titles.
 pub const INK: Colour = [31, 41, 51];
@@ -204,7 +204,7 @@ impl ColourScale {
     /// From zero, or the minimum if that is negative, to the maximum, both rounded outwards.
     pub(crate) fn covering(values: impl IntoIterator<Item = f64> + Clone) -> Self {
         let min = values.clone().into_iter().fold(0.0, f64::min);
-        let max = values.into_iter().fold(0.0, f64::max);
+        let max = values.into_iter().largest();
         let step = round_below(f64::max(max - min, 1e-3) / 4.0);
         Self { low: step * (min / step).floor(), high: step * (max / step).ceil().max(1.0), step }
     }

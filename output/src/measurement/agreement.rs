@@ -6,6 +6,7 @@ use analysis::{
 };
 use design::sheet::cut_sheet::Sheet;
 use serde::Serialize;
+use support::Extremes;
 use support::statistics::root_mean_square;
 
 /// Agreement of the points with one state, after the rigid motion (and scale) is removed.
@@ -75,7 +76,7 @@ impl Spread {
     fn new(distances: Vec<(String, f64)>, size: f64) -> Option<Self> {
         let count = distances.len();
         let rms = root_mean_square(distances.iter().map(|(_, distance)| *distance));
-        let (max_at, max) = distances.into_iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
+        let (max_at, max) = distances.into_iter().largest_by(|(_, distance)| *distance)?;
         Some(Self {
             count,
             rms,
@@ -93,8 +94,7 @@ impl OpeningSpread {
             openings.iter().map(of).sum::<f64>() / openings.len() as f64
         };
         let offset = mean(&MeasuredOpening::difference_deg);
-        let size = |opening: &MeasuredOpening| opening.difference_deg().abs();
-        let worst = openings.iter().max_by(|a, b| size(a).total_cmp(&size(b)))?;
+        let worst = openings.iter().largest_by(|opening| opening.difference_deg().abs())?;
         Some(Self {
             count: openings.len(),
             measured_mean_deg: mean(&|opening| opening.measured_deg),

@@ -5,6 +5,7 @@ use design::{hinge_law::DamageMeasure, objective::design_problem::Deployment};
 use hinge::HingeDesign;
 use scene::Scene;
 use serde::Serialize;
+use support::Extremes;
 use surrogate::Surrogate;
 
 /// One hinge of the best design in the deployed sheet.
@@ -67,7 +68,7 @@ impl HingeRow {
             inside: deployment.path.iter().all(|step| step.inside[h]),
             path_separation: path_separation(hinge.w_lig, curvature, &states),
             flank_gap: (states.iter().map(|state| flank_gap(&designs[h], state, regime)))
-                .fold(f64::INFINITY, f64::min),
+                .smallest(),
         }
     }
 }

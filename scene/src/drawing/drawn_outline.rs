@@ -11,7 +11,7 @@ use crate::drawing::{
     svg_path,
 };
 use std::path::{Path, PathBuf};
-use support::{Fault, Point, at, refuse, text_file};
+use support::{Fault, Joined, Point, at, refuse, text_file};
 
 /// First bytes of a file that is compressed by gzip.
 const GZIP: &[u8] = b"\x1F\x8B";
@@ -191,7 +191,7 @@ pub(super) fn listed<'a>(contours: impl Iterator<Item = (usize, &'a Contour)>) -
         };
         format!("#{} {width} x {height} at ({x}, {y}){open}", i + 1)
     });
-    words.collect::<Vec<_>>().join(", ")
+    words.joined(", ")
 }
 
 #[cfg(test)]

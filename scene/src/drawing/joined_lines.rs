@@ -4,7 +4,7 @@
 use crate::drawing::contour::Contour;
 use design::geometry::polygon;
 use std::collections::{HashMap, HashSet};
-use support::Point;
+use support::{Extremes, Point};
 
 /// Distance of two ends that meet, over the size of the drawing.
 const JOINED: f64 = 1e-5;
@@ -62,7 +62,7 @@ fn chains(open: &[Contour], whole: &[Contour], nodes: &mut Nodes) -> Vec<Contour
     for contour in whole {
         lines.extend(nodes.lines(polygon::edges(&contour.points)));
     }
-    let rounding = open.iter().map(|contour| contour.rounding).fold(0.0, f64::max);
+    let rounding = open.iter().map(|contour| contour.rounding).largest();
     let mut links: Vec<Vec<usize>> = Vec::new();
     for contour in open {
         let pairs = contour.points.windows(2).map(|pair| (pair[0], pair[1]));

@@ -8,7 +8,7 @@ use crate::drawing::{
     css_geometry, svg_warnings,
     visible_paths::{Subpath, add_visible, is_filled, subpaths, transformed},
 };
-use support::{Fault, ensure};
+use support::{Extremes, Fault, ensure, fault};
 use usvg::{
     ImageHrefResolver, Options, Path, Transform, Tree,
     roxmltree::{Document, ParsingOptions},
@@ -66,7 +66,7 @@ pub(super) fn contours(svg: &str) -> Result<(Vec<Contour>, Vec<String>), Fault> 
 }
 
 pub(super) fn not_svg(error: usvg::Error) -> Fault {
-    format!("the file is not readable as SVG: {error}; save the drawing as plain SVG").into()
+    fault!("the file is not readable as SVG: {error}; save the drawing as plain SVG")
 }
 
 /// The error of a drawing without a path, and the reason in words, which may be empty.
@@ -89,7 +89,7 @@ impl Subpath {
     /// It on the page. Coordinates are rounded to 24 bits before the transform.
     fn contour(self, transform: Transform, filled: bool) -> Contour {
         let largest = self.points.as_flattened().iter().map(|c| c.abs());
-        let largest = largest.fold(0.0, f64::max);
+        let largest = largest.largest();
         let scale = (f64::from(transform.sx) * f64::from(transform.sy)
             - f64::from(transform.kx) * f64::from(transform.ky))
         .abs()

@@ -15,7 +15,7 @@ use crate::{
     objective::term::{Deployed, Term, TermGradient, over_panels},
 };
 use faer::c64;
-use support::Point;
+use support::{Extremes, Point};
 
 /// Weight of the barrier relative to d_min^2, and to the area of a square of this side.
 const WEIGHT: f64 = 0.01;
@@ -58,7 +58,7 @@ impl Term for PanelWidth {
 /// panels (mm).
 pub fn thinnest_panel(panels: &[[Point; 4]]) -> f64 {
     let widths = panels.iter().flat_map(|panel| PAIRS.map(|pair| distance(panel, pair).0));
-    widths.fold(f64::INFINITY, f64::min)
+    widths.smallest()
 }
 
 /// The distance of a corner from the line of an edge, the edge, and the vector from its start to

@@ -13,7 +13,7 @@ use analysis::{design_checks::WholeSheet, levels::Levels, unit::Unit};
 use design::{pattern::grid::Grid, sheet::kinematics::deployed_boundaries};
 use scene::{CoarseSearch, Level, LevelDifference};
 use serde_json::json;
-use support::{severity::Severity, statistics::root_mean_square};
+use support::{Joined, severity::Severity, statistics::root_mean_square};
 use surrogate::TestErrors;
 
 pub(super) fn material_and_size(of: &DeployedDesign, run: &FinishedRun) -> Vec<Fact> {
@@ -121,7 +121,7 @@ fn listed(percents: &[f64]) -> String {
         true => format!("{name} -"),
         false => format!("{name} {}", rounded(*error, 3)),
     });
-    errors.collect::<Vec<_>>().join(", ")
+    errors.joined(", ")
 }
 
 pub(super) fn levels_and_findings(of: &DeployedDesign, run: &FinishedRun) -> Vec<Fact> {
@@ -196,7 +196,7 @@ fn levels(levels: &Levels) -> Fact {
         let corners = level.difference.as_ref()?.corners[1];
         Some(format!("`{}` {}", level.level, rounded(corners, 2)))
     });
-    let others = others.collect::<Vec<_>>().join(", ");
+    let others = others.joined(", ");
     text("levels", format!("largest difference of a corner to `{finest}`, mm: {others}"))
 }
 

@@ -4,6 +4,7 @@ use super::{Rule, at, found, rule};
 use crate::report::numbers::rounded;
 use analysis::calibration::CALIBRATION;
 use design::hinge_law::{DamageMeasure, HingeDamage};
+use support::Extremes;
 use support::severity::Severity::{Error, Note, Warning};
 
 /// Relative difference of two slits that is rounding.
@@ -108,7 +109,7 @@ pub(super) const RULES: [Rule; 10] = [
             // Windows have no contact.
             of.scene.surrogate()?;
             let gaps = of.hinges.iter().map(|row| row.flank_gap);
-            let most = -gaps.fold(f64::INFINITY, f64::min);
+            let most = -gaps.smallest();
             let message = format!(
                 "the flanks of their cuts are pushed into each other, by up to {} mm: contact between them is not modelled, and the load is \
                  larger than stated (docs/TRIED.md)",
@@ -177,7 +178,7 @@ pub(super) const RULES: [Rule; 10] = [
             let forces = [("F_a", errors.f_a), ("F_s", errors.f_s), ("M_theta", errors.m_theta)];
             let forces = forces.map(|(name, error)| (100.0 * error.relative_rmse, name));
             let forces = forces.into_iter().filter(|(error, _)| *error > INACCURATE);
-            let (error, name) = forces.max_by(|one, other| one.0.total_cmp(&other.0))?;
+            let (error, name) = forces.largest_by(|(error, _)| *error)?;
             of.run.map(|_| {
                 found(format!(
                     "the weights {} are inaccurate: {name} is off by {} % at {states} states; solve more rays, or check this design by \

@@ -19,6 +19,7 @@ use design::{
 };
 use hinge::Regime;
 use scene::{FRICTION, Posture};
+use support::Joined;
 use support::severity::Severity::{Error, Note, Warning};
 
 pub(super) const RULES: [Rule; 14] = [
@@ -263,13 +264,13 @@ pub(super) const RULES: [Rule; 14] = [
             let openings: Vec<[f64; 2]> =
                 by_loads.filter_map(|row| Some(row.end?.openings)).collect();
             let far = openings.iter().any(|[before, after]| (after - before).abs() > PLATEAU);
-            let after: Vec<String> =
-                openings.iter().map(|[_, after]| rounded(after.to_degrees(), 3)).collect();
+            let after =
+                openings.iter().map(|[_, after]| rounded(after.to_degrees(), 3)).joined(" and ");
             far.then(|| {
                 found(format!(
                     "with loads 10 % lower and higher hinges open by {} in place of {} deg on the mean: a load does not determine the shape; fasten panels at \
                      their places, or prescribe the stroke",
-                    after.join(" and "),
+                    after,
                     rounded(openings[0][0].to_degrees(), 3)
                 ))
             })
