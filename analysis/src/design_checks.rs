@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use std::io;
 use std::path::Path;
 use support::severity::Finding;
-use support::{FileError, regular_file, sealed_json, whole_file};
+use support::{FileError, regular_file, sealed_json};
 
 /// The checks, in the folder of a run.
 pub const CHECKS_FILE: &str = "checks.json";
@@ -61,9 +61,7 @@ impl DesignChecks {
 
     /// Writes the checks of a design to the folder of its run.
     pub fn write(self, folder: &Path, design: &DesignVector) -> Result<(), FileError> {
-        let path = folder.join(CHECKS_FILE);
         let kept = ChecksOfDesign { design: design.clone(), checks: self };
-        let text = sealed_json::to_vec(&kept).map_err(FileError::at(&path))?;
-        whole_file::write(&path, &text).map_err(FileError::at(&path))
+        sealed_json::write(&folder.join(CHECKS_FILE), &kept)
     }
 }

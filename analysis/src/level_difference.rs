@@ -31,7 +31,7 @@ pub fn deployed(
     scene: &Scene,
     design: &DesignVector,
 ) -> Result<(DesignProblem, Deployment), Fault> {
-    let problem = scene.problem().map_err(|error| fault!("{error}"))?;
+    let problem = scene.problem()?;
     let deployment = problem.deploy(design).and_then(|deployment| {
         deployment.at_full_load()?;
         Ok(deployment)

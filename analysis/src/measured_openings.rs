@@ -114,7 +114,7 @@ pub fn openings(sheet: &Sheet, fit: &Fit, panels: &[MeasuredPanel]) -> Vec<Measu
     let predicted = hinge_deformations(sheet, &fit.shape.configuration);
     let hinges = sheet.hinges.iter().zip(predicted).enumerate();
     let measured = hinges.filter_map(|(h, (hinge, predicted))| {
-        let between = [hinge.panel_a(), hinge.panel_b()];
+        let between = hinge.panels();
         let [(phi_a, lever_a), (phi_b, lever_b)] = [rotations[between[0]]?, rotations[between[1]]?];
         // Rotations are known up to full turns: the nearest to the prediction is meant.
         let ahead = (phi_b - phi_a - predicted.theta + PI).rem_euclid(TAU) - PI;

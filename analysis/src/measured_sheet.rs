@@ -5,7 +5,7 @@ use crate::path_fit::{Fit, MIN_POINTS, PathFit};
 use crate::shape_path::ShapePath;
 use design::geometry::similarity::Scale;
 use std::collections::HashSet;
-use support::{Fault, fault, refuse};
+use support::{Fault, ensure, fault, refuse};
 
 /// A measured sheet and its path.
 #[derive(Debug)]
@@ -25,12 +25,11 @@ impl MeasuredSheet {
     pub fn new(path: &ShapePath, points: &[MeasuredPoint], scale: Scale) -> Result<Self, Fault> {
         let mut panels = HashSet::new();
         let alone = points.iter().all(|point| panels.insert(point.mark.panel));
-        if points.len() < MIN_POINTS {
-            refuse!(
-                "{} measured points: at least {MIN_POINTS} are needed for pose, scale and load factor",
-                points.len()
-            );
-        }
+        ensure!(
+            points.len() >= MIN_POINTS,
+            "{} measured points: at least {MIN_POINTS} are needed for pose, scale and load factor",
+            points.len()
+        );
         if scale == Scale::Free && path.end() > 0.0 && alone {
             refuse!(
                 "without two points on one panel, a larger scale and a wider opening look alike: measure corners, or measure in mm, \

@@ -320,7 +320,7 @@ impl Ligament {
         [f_a, f_s, m_theta]: [f64; 3],
     ) -> Self {
         let hinge = &sheet.hinges[h];
-        let panels = [hinge.panel_a(), hinge.panel_b()];
+        let panels = hinge.panels();
         let turned = 0.5 * (configuration[panels[0]][2] + configuration[panels[1]][2]);
         let e_sec = complex(hinge.e_sec);
         let middle = complex(hinge.tip) + 0.5 * hinge.w_lig * I * e_sec;

@@ -6,7 +6,7 @@ mod seeds;
 
 use crate::{charts, input_file, output_file, picture, run_folder};
 use ::train::{Epoch, Trained, TrainingConfig};
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result, bail, ensure};
 pub use campaign::train_campaign;
 use dataset::{ComparedState, Database, LeftOut};
 use kept_fits::continued_fit;
@@ -100,12 +100,11 @@ impl TrainingTask<'_> {
 
     fn refuse_card_of_database(&self) -> Result<()> {
         // Card and manifest are both `<stem>.json`.
-        if located(&card_path(&self.out))? == located(&card_path(&self.database))? {
-            bail!(
-                "the card of {} would replace the database's manifest: choose another name",
-                self.out.display()
-            );
-        }
+        ensure!(
+            located(&card_path(&self.out))? != located(&card_path(&self.database))?,
+            "the card of {} would replace the database's manifest: choose another name",
+            self.out.display()
+        );
         Ok(())
     }
 

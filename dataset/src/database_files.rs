@@ -16,7 +16,7 @@ use std::fmt::{self, Display};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use support::whole_file::{self, Unnamed};
-use support::{Fault, fault, refuse, regular_file, sealed_json, unread, unwritten};
+use support::{Fault, ensure, fault, refuse, regular_file, sealed_json, unread, unwritten};
 
 impl Database {
     /// Reads `X.parquet` and its manifest `X.json`; an error if the hash of the file is not that in
@@ -92,14 +92,13 @@ fn read_files(path: &Path) -> Result<(Manifest, Vec<u8>), DatasetError> {
     }
     let manifest = read_manifest(&manifest_path(path))?;
     let found = parquet::hash(&parquet);
-    if found != manifest.hash {
-        refuse!(
-            "{} does not match its manifest (its BLAKE3 hash is {found}, not {}); copy both files \
+    ensure!(
+        found == manifest.hash,
+        "{} does not match its manifest (its BLAKE3 hash is {found}, not {}); copy both files \
              from the same place, or collect the campaign again",
-            path.display(),
-            manifest.hash
-        );
-    }
+        path.display(),
+        manifest.hash
+    );
     Ok((manifest, parquet))
 }
 
@@ -131,13 +130,12 @@ fn read_manifest(path: &Path) -> Result<Manifest, DatasetError> {
     }
     let bytes = read_bytes(path)?;
     let Version { format_version } = serde_json::from_slice(&bytes).map_err(no_manifest(path))?;
-    if format_version != u64::from(FORMAT_VERSION) {
-        refuse!(
-            "{} has the format version {format_version}, but this program reads only version \
+    ensure!(
+        format_version == u64::from(FORMAT_VERSION),
+        "{} has the format version {format_version}, but this program reads only version \
              {FORMAT_VERSION}: collect the campaign again, or use the program that wrote it",
-            path.display()
-        );
-    }
+        path.display()
+    );
     Ok(sealed_json::from_slice(&bytes).map_err(no_manifest(path))?)
 }
 

@@ -11,7 +11,7 @@ use rand_chacha::ChaCha8Rng;
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::{FRAC_PI_2, PI};
-use support::refuse;
+use support::ensure;
 
 /// How geometries are assigned to the parts.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -67,20 +67,18 @@ impl Split {
             return Ok(Self { test: jobs.collect(), ..Self::default() });
         }
         let SplitPlan { validation, test, .. } = *plan;
-        if ![validation, test].iter().all(|share| (0.0..0.5).contains(share) && *share > 0.0) {
-            refuse!(
-                "the fractions validation = {validation} and test = {test} violate \
+        ensure!(
+            [validation, test].iter().all(|share| (0.0..0.5).contains(share) && *share > 0.0),
+            "the fractions validation = {validation} and test = {test} violate \
                  0 < fraction < 0.5"
-            );
-        }
+        );
         let mut geometries: Vec<&Vec<String>> = geometries.0.values().collect();
         let count = geometries.len();
-        if count < 3 {
-            refuse!(
-                "{count} geometries cannot be split into training, validation and test: at least \
+        ensure!(
+            count >= 3,
+            "{count} geometries cannot be split into training, validation and test: at least \
                  3 are needed"
-            );
-        }
+        );
         geometries.shuffle(&mut ChaCha8Rng::seed_from_u64(plan.seed));
         // Rounding leaves every part at least one geometry.
         let share =

@@ -83,7 +83,7 @@ pub(crate) use calculix::deck_run::{DeckRun, read_if_there, time_reached};
 pub(crate) use calculix::response::{Damage, samples};
 pub(crate) use campaign::campaign_folder::{CampaignFolder, EventLog, Index};
 pub(crate) use campaign::extra_rays::read_extra_rays;
-pub(crate) use record_file::{damaged, entries, read_json, short_hash, unless_damaged, write_json};
+pub(crate) use record_file::{damaged, entries, read_json, short_hash, unless_damaged};
 pub(crate) use sheet::sheet_deck::{SheetModel, force_set, hinge_set};
 pub(crate) use sheet::sheet_nodes::{GRAVITY, STIFFNESS, SheetNodes};
 pub(crate) use sheet::sheet_output::{SheetFrame, SheetLayout};

@@ -5,7 +5,7 @@ use serde::de::DeserializeOwned;
 use std::fs::DirEntry;
 use std::io;
 use std::path::Path;
-use support::{FileError, regular_file, sealed_json, whole_file};
+use support::{FileError, regular_file, sealed_json};
 
 /// Separates damage from other errors of reading a file: `None` if the contents are damaged.
 pub(crate) fn unless_damaged<T>(read: Result<T, FileError>) -> Result<Option<T>, FileError> {
@@ -35,12 +35,6 @@ pub(crate) fn read_json<T: DeserializeOwned>(path: &Path) -> Result<Option<T>, F
 /// The entries of a folder, in no order.
 pub(crate) fn entries(folder: &Path) -> Result<Vec<DirEntry>, FileError> {
     std::fs::read_dir(folder).and_then(Iterator::collect).map_err(FileError::at(folder))
-}
-
-/// Writes a JSON file atomically.
-pub(crate) fn write_json<T: Serialize>(path: &Path, value: &T) -> Result<(), FileError> {
-    let bytes = sealed_json::to_vec(value).map_err(FileError::at(path))?;
-    whole_file::write(path, &bytes).map_err(FileError::at(path))
 }
 
 /// Identifies the inputs that determine a result: 16 hexadecimal digits of the hash of their JSON.

@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
-use support::{Fault, refuse};
+use support::{Fault, ensure, refuse};
 
 /// Geometry of the ligament left between the tip of a main cut and a secondary cut; (7).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -142,29 +142,25 @@ impl HingeDesign {
         if let Some((name, value)) = named.iter().zip(values).find(|(_, it)| !it.is_finite()) {
             refuse!("{name} = {value} is not a finite number");
         }
-        if !(MIN_W_LIG..=MAX_W_LIG).contains(&w_lig) {
-            refuse!(
-                "w_lig = {w_lig} mm violates {MIN_W_LIG} <= w_lig <= {MAX_W_LIG}: lengths are in mm{}",
-                unit_slip(w_lig)
-            );
-        }
+        ensure!(
+            (MIN_W_LIG..=MAX_W_LIG).contains(&w_lig),
+            "w_lig = {w_lig} mm violates {MIN_W_LIG} <= w_lig <= {MAX_W_LIG}: lengths are in mm{}",
+            unit_slip(w_lig)
+        );
         if alpha <= 0.0 || alpha >= PI {
             let deg = alpha.to_degrees();
             refuse!("alpha = {deg:.4} deg violates 0 < alpha < 180");
         }
-        if fillet_ratio <= 0.0 || fillet_ratio >= 1.0 {
-            refuse!(
-                "fillet_ratio = {fillet_ratio} violates 0 < fillet_ratio < 1 (the hole would cut the ligament)"
-            );
-        }
+        ensure!(
+            fillet_ratio > 0.0 && fillet_ratio < 1.0,
+            "fillet_ratio = {fillet_ratio} violates 0 < fillet_ratio < 1 (the hole would cut the ligament)"
+        );
         let limit = 2.0 * self.fillet_radius();
         if kerf <= 0.0 || kerf >= limit {
             return Err(InvalidDesign::Kerf { kerf, limit });
         }
         let limit = minimum * w_lig;
-        if r_win <= limit {
-            refuse!("r_win = {r_win} mm violates r_win > {minimum} w_lig = {limit} mm");
-        }
+        ensure!(r_win > limit, "r_win = {r_win} mm violates r_win > {minimum} w_lig = {limit} mm");
         Ok(())
     }
 }

@@ -4,7 +4,7 @@ use crate::Regime;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
-use support::{Fault, fault, key_limits, refuse, toml_file};
+use support::{Fault, at, ensure, fault, key_limits, refuse, toml_file};
 
 /// Standard acceleration of gravity, rounded (m/s^2 = N/kg).
 pub const STANDARD_GRAVITY: f64 = 9.81;
@@ -75,10 +75,8 @@ impl SheetMaterial {
     /// Reads a material and rejects impossible values.
     pub fn load(path: &Path) -> Result<Self, Fault> {
         let material: Self = toml_file::read(path)?;
-        match material.validate() {
-            Ok(()) => Ok(material),
-            Err(reason) => Err(fault!("{}: {reason}", path.display())),
-        }
+        material.validate().map_err(at(path.display()))?;
+        Ok(material)
     }
 
     /// The material as solves record it: without deviation and creep, which they do not depend on.
@@ -135,13 +133,12 @@ impl SheetMaterial {
     fn check(&self) -> Result<(), Fault> {
         key_limits::check::<Self>(self)?;
         let stiffness = self.young / self.density_kg_m3;
-        if stiffness > STIFFEST {
-            refuse!(
-                "young = {} MPa is {stiffness:.0} MPa for each kg/m^3 of its density, more than the {STIFFEST} that any sheet has: check \
+        ensure!(
+            stiffness <= STIFFEST,
+            "young = {} MPa is {stiffness:.0} MPa for each kg/m^3 of its density, more than the {STIFFEST} that any sheet has: check \
                  both, and in a tensile test width, thickness, gauge length and units",
-                self.young
-            );
-        }
+            self.young
+        );
         match self.plastic.first() {
             None => refuse!("the table `plastic` is empty"),
             Some(&[_, strain]) if strain != 0.0 => {
@@ -150,14 +147,17 @@ impl SheetMaterial {
             Some(_) => {}
         }
         for (row, &[stress, strain]) in self.plastic.iter().enumerate() {
-            if !(stress > 0.0 && stress < self.young && strain.is_finite()) {
-                refuse!("`plastic` row {row}: stress = {stress} MPa violates 0 < stress < young");
-            }
+            ensure!(
+                stress > 0.0 && stress < self.young && strain.is_finite(),
+                "`plastic` row {row}: stress = {stress} MPa violates 0 < stress < young"
+            );
         }
         for (row, pair) in self.plastic.windows(2).enumerate() {
-            if pair[1][1] <= pair[0][1] {
-                refuse!("`plastic` rows {row} and {}: plastic strain must increase", row + 1);
-            }
+            ensure!(
+                pair[1][1] > pair[0][1],
+                "`plastic` rows {row} and {}: plastic strain must increase",
+                row + 1
+            );
         }
         Ok(())
     }

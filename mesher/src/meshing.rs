@@ -8,14 +8,14 @@ use std::path::Path;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 use support::program::{self, Tool, ToolError, ToolKind};
-use support::{Fault, FileError};
+use support::{Fault, FileError, ensure, said};
 
 /// Why no mesh was generated.
 #[derive(Debug, thiserror::Error)]
 pub enum MeshError {
     /// The design, the sheet or its thickness is impossible.
-    #[error("{0}")]
-    Invalid(String),
+    #[error(transparent)]
+    Invalid(#[from] Fault),
     /// gmsh gave no result.
     #[error(transparent)]
     Gmsh(#[from] ToolError),
@@ -86,7 +86,7 @@ impl SheetShape {
         stop: &AtomicBool,
     ) -> Result<SheetMesh, MeshError> {
         check(self.thickness, self.windows.iter().map(|window| &window.design))?;
-        let script = geo::sheet_script(self).map_err(MeshError::Invalid)?;
+        let script = geo::sheet_script(self)?;
         generate(&script, folder, SHEET, gmsh, limit, stop)?;
         let kinds = [ElementKind::Brick, ElementKind::Wedge];
         let plane = read_plane(folder, SHEET, &kinds)?;
@@ -99,14 +99,15 @@ impl SheetShape {
 fn check<'a>(
     thickness: f64,
     designs: impl IntoIterator<Item = &'a HingeDesign>,
-) -> Result<(), MeshError> {
+) -> Result<(), Fault> {
     for design in designs {
-        design.validate_coupon().map_err(|error| MeshError::Invalid(error.to_string()))?;
+        design.validate_coupon().map_err(said)?;
     }
-    if thickness.is_finite() && thickness > 0.0 {
-        return Ok(());
-    }
-    Err(MeshError::Invalid(format!("thickness = {thickness} mm violates thickness > 0")))
+    ensure!(
+        thickness.is_finite() && thickness > 0.0,
+        "thickness = {thickness} mm violates thickness > 0"
+    );
+    Ok(())
 }
 
 /// Runs gmsh on a script in `folder`.

@@ -5,7 +5,7 @@
 use crate::ElementKind;
 use std::collections::HashMap;
 use std::str::FromStr;
-use support::{Fault, fault, refuse};
+use support::{Fault, ensure, fault, refuse};
 
 /// The named boundary curves of the window.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -133,9 +133,7 @@ pub fn read_msh(bytes: &[u8], elements: &[ElementKind]) -> Result<PlaneMesh, Fau
             return Err(at_line(line, what));
         }
     }
-    if mesh.faces.is_empty() {
-        refuse!("the mesh file contains no faces");
-    }
+    ensure!(!mesh.faces.is_empty(), "the mesh file contains no faces");
     for (boundary, ids, line) in edges {
         let [Some(a), Some(b), Some(c)] = ids.map(|id| indices.get(&id).copied()) else {
             return Err(at_line(line, "the boundary edge belongs to no face"));

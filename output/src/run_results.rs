@@ -11,7 +11,7 @@ use scene::{
     design_run::{Designed, START},
 };
 use std::{io, path::Path};
-use support::{Fault, FileError, at, whole_file};
+use support::{Fault, FileError, at, fault, whole_file};
 
 /// Writes the results of [`RUN_FILES`]: the picture of the flat sheet for a design with cut lines,
 /// the cut files for a design without errors, or if `force`.
@@ -46,7 +46,7 @@ pub fn write_results(scene: &Scene, designed: &Designed, force: bool) -> Result<
 }
 
 fn unwritten(error: FileError) -> Fault {
-    format!("cannot write {error}").into()
+    fault!("cannot write {error}")
 }
 
 /// Removes the files of an earlier run of the scene, so that the next one begins at the start

@@ -26,7 +26,7 @@ use std::{
     f64::consts::FRAC_PI_2,
 };
 use support::{
-    Fault, at, ensure,
+    Fault, at, ensure, fault,
     key_limits::{self, within},
     refuse,
 };
@@ -80,7 +80,7 @@ pub(super) fn level(scene: &SceneConfig) -> Result<(), Fault> {
 
 /// The error of a scene without a section that its level reads.
 pub(super) fn no_section(name: &str) -> Fault {
-    format!("the level of the scene needs the section [{name}]").into()
+    fault!("the level of the scene needs the section [{name}]")
 }
 
 /// Maximum ratio of the target's perimeter to the perimeter of the flat sheet. Panels keep their

@@ -14,7 +14,7 @@ use design::{
 };
 use hinge::{HingeDeformation, Regime, SheetMaterial};
 use std::{f64::consts::FRAC_PI_2, fmt, path::Path, sync::Arc};
-use support::{Fault, at, ensure, refuse, said};
+use support::{Fault, at, ensure, refuse};
 use surrogate::Surrogate;
 
 /// Stiffness of the contact of panel edges relative to k_theta, and the void angle (rad) at which
@@ -148,7 +148,7 @@ fn networks(
             file.is_file(),
             "{scene}: surrogate.weights: there is no file {weights}: train it, or give the constants of level = \"linear\""
         );
-        let surrogate = Surrogate::load(&file).map_err(said)?;
+        let surrogate = Surrogate::load(&file)?;
         let place = format!("{scene}: the weights {weights} are for ");
         let fitted = fitted(config, measured, surrogate);
         networks.push(fitted.map_err(|mismatch| place + &mismatch.to_string())?);

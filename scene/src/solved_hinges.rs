@@ -9,7 +9,7 @@ use design::{
 use hinge::{HingeDeformation, HingeDesign};
 use serde::{Deserialize, Serialize};
 use std::{path::Path, sync::Arc};
-use support::{Fault, FileError, at, ensure, regular_file, said, sealed_json, whole_file};
+use support::{Fault, FileError, at, ensure, regular_file, said, sealed_json};
 
 /// A hinge at the end of its path by finite elements.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
@@ -62,8 +62,7 @@ impl SolvedHinges {
 
     /// Writes them to a file.
     pub fn write(&self, file: &Path) -> Result<(), FileError> {
-        let text = sealed_json::to_vec(self).map_err(FileError::at(file))?;
-        whole_file::write(file, &text).map_err(FileError::at(file))
+        sealed_json::write(file, self)
     }
 
     /// Identifies them.

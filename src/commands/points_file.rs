@@ -71,9 +71,11 @@ impl PointsFile {
             }
             let own = own.unwrap_or(file.unit);
             let pixels = |unit: LengthUnit| unit == LengthUnit::Px;
-            if !file.points.is_empty() && pixels(own) != pixels(file.unit) {
-                bail!("{}: column `unit`: pixels and lengths are mixed", located(line));
-            }
+            ensure!(
+                file.points.is_empty() || pixels(own) == pixels(file.unit),
+                "{}: column `unit`: pixels and lengths are mixed",
+                located(line)
+            );
             file.unit = own;
             point.position = point.position.map(|x| x * own.length());
             if y_down {

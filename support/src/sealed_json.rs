@@ -1,10 +1,11 @@
 //! JSON files with damage detection: the key `checksum` contains the BLAKE3 hash of the other
 //! contents.
 
-use crate::{Fault, said};
+use crate::{Fault, FileError, said, whole_file};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
+use std::path::Path;
 
 /// Name of the key.
 const CHECKSUM: &str = "checksum";
@@ -20,6 +21,12 @@ pub fn to_vec(value: &impl Serialize) -> Result<Vec<u8>, serde_json::Error> {
         keys.insert(CHECKSUM.to_owned(), sum.into());
     }
     serde_json::to_vec_pretty(&value)
+}
+
+/// Writes the JSON of a value with its checksum.
+pub fn write(path: &Path, value: &impl Serialize) -> Result<(), FileError> {
+    let text = to_vec(value).map_err(FileError::at(path))?;
+    whole_file::write(path, &text).map_err(FileError::at(path))
 }
 
 /// The value in JSON text, after checking its checksum, which it must have.
@@ -48,11 +55,10 @@ fn read<T: DeserializeOwned>(text: &[u8]) -> Result<Option<T>, Fault> {
     };
     let (expected, found) =
         (expected.as_str().unwrap_or_default(), checksum(&value).map_err(said)?);
-    if expected != found {
-        refuse!(
-            "the file is damaged or was edited: it states the checksum {expected}, but its contents have {found}"
-        );
-    }
+    ensure!(
+        expected == found,
+        "the file is damaged or was edited: it states the checksum {expected}, but its contents have {found}"
+    );
     serde_json::from_value(value).map(Some).map_err(said)
 }
 

@@ -4,7 +4,7 @@ use crate::features::{LOG_WIDTH, Standardisation, feature_names};
 use crate::network::{finite, other_shape};
 use hinge::{HingeConstants, TrainingDomain};
 use serde::{Deserialize, Deserializer, Serialize};
-use support::{Fault, refuse};
+use support::{Fault, ensure};
 
 /// Format version of the weight file and its card; no other version is read.
 pub const FORMAT_VERSION: u32 = 10;
@@ -234,9 +234,7 @@ impl Card {
             ("units", self.units.clone(), UNITS.into()),
             ("features", self.features.join(", "), names.join(", ")),
         ] {
-            if found != expected {
-                refuse!("the {key} of the card are {found}, expected {expected}");
-            }
+            ensure!(found == expected, "the {key} of the card are {found}, expected {expected}");
         }
         let damages = self.damage_scales().into_iter();
         let scales = [
@@ -255,9 +253,10 @@ impl Card {
         let deviations = names.iter().zip(std.iter().copied());
         let deviations = deviations.map(|(name, std)| (format!("feat_std of {name}"), std));
         for (name, value) in scales.chain(deviations) {
-            if !(value > 0.0 && value.is_finite()) {
-                refuse!("`{name}` = {value} violates 0 < {name} < infinity");
-            }
+            ensure!(
+                value > 0.0 && value.is_finite(),
+                "`{name}` = {value} violates 0 < {name} < infinity"
+            );
         }
         finite("feat_mean", mean)
     }

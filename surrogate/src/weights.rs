@@ -22,7 +22,9 @@ use std::collections::BTreeMap;
 use std::fmt::Display;
 use std::io;
 use std::path::{Path, PathBuf};
-use support::{Fault, fault, refuse, regular_file, sealed_json, unread, unwritten, whole_file};
+use support::{
+    Fault, ensure, fault, refuse, regular_file, sealed_json, unread, unwritten, whole_file,
+};
 
 impl Surrogate {
     /// Reads `X.safetensors` and its card `X.json`.
@@ -33,13 +35,12 @@ impl Surrogate {
         let mut card = Card::of(weights)?;
         let expected = card.weights_hash.take().unwrap_or_default();
         let found = blake3::hash(&bytes).to_hex().to_string();
-        if found != expected {
-            refuse!(
-                "{} is not the file that its card describes (BLAKE3 {found}, not {expected}): it is damaged, or the card is of another \
+        ensure!(
+            found == expected,
+            "{} is not the file that its card describes (BLAKE3 {found}, not {expected}): it is damaged, or the card is of another \
      training; copy the two files together",
-                weights.display()
-            );
-        }
+            weights.display()
+        );
         from_tensors(&mut tensors, card).map_err(|fault| fault!("{}: {fault}", weights.display()))
     }
 
@@ -87,12 +88,11 @@ fn from_tensors(tensors: &mut BTreeMap<String, Tensor>, card: Card) -> Result<Su
         if found.shape != expected.shape {
             return Err(other_shape(tensor, &format!("{:?}", expected.shape), &found.shape));
         }
-        if found.values != expected.values {
-            refuse!(
-                "`{tensor}` differs from the value in the card; the two files are from different \
+        ensure!(
+            found.values == expected.values,
+            "`{tensor}` differs from the value in the card; the two files are from different \
                  trainings, so copy both from the same place"
-            );
-        }
+        );
     }
     if let Some((tensor, _)) = tensors.pop_first() {
         refuse!("tensor `{tensor}` is not part of a known network");
@@ -119,25 +119,23 @@ impl Card {
         })?;
         let Version { format_version } =
             serde_json::from_slice(&text).map_err(|error| no_card(path, error))?;
-        if format_version != u64::from(FORMAT_VERSION) {
-            refuse!(
-                "{} has the format version {format_version}, but this program reads only version {FORMAT_VERSION}: train the weights \
+        ensure!(
+            format_version == u64::from(FORMAT_VERSION),
+            "{} has the format version {format_version}, but this program reads only version {FORMAT_VERSION}: train the weights \
      again, or use the program that wrote them",
-                path.display()
-            );
-        }
+            path.display()
+        );
         sealed_json::from_slice(&text).map_err(|error| no_card(path, error))
     }
 }
 
 fn refuse_database(weights: &Path) -> Result<(), Fault> {
-    if weights.extension().is_none_or(|kind| kind != "parquet") {
-        return Ok(());
-    }
-    Err(fault!(
+    ensure!(
+        weights.extension().is_none_or(|kind| kind != "parquet"),
         "{} is a database (Parquet), but weights (.safetensors) are expected; `kirigami train` makes weights from a database",
         weights.display()
-    ))
+    );
+    Ok(())
 }
 
 fn no_card(path: &Path, error: impl Display) -> Fault {

@@ -62,7 +62,7 @@ impl TrainingConfig {
 
     /// Rejects impossible values; the error names the key and the rule.
     pub fn validate(&self) -> Result<(), Fault> {
-        key_limits::check::<Self>(self).map_err(|error| fault!("{error}"))?;
+        key_limits::check::<Self>(self)?;
         let checks = [
             (
                 "embedding",

@@ -20,7 +20,7 @@ use crate::validation::Parity;
 use burn::tensor::DType;
 use dataset::{Manifest, Row};
 use hinge::HingeConstants;
-use support::{Fault, fault, refuse};
+use support::{Fault, ensure, refuse};
 use surrogate::{Card, DenseLayer, Layers, Standardisation, Surrogate, feature_names};
 
 /// The initial networks and their scales.
@@ -98,27 +98,26 @@ pub fn check_pretrained(pretrained: &Surrogate, config: &TrainingConfig) -> Resu
     let damage = std::iter::repeat_n(config.damage().to_vec(), heads);
     let expected: Vec<_> = std::iter::once(config.embedding.clone()).chain(damage).collect();
     let found = given.widths();
-    if found != expected {
-        refuse!(
-            "the initial weights have the layers {found:?}, but the configuration has {expected:?} \
+    ensure!(
+        found == expected,
+        "the initial weights have the layers {found:?}, but the configuration has {expected:?} \
              (embedding and damage heads); change the configuration, or start with random weights"
-        );
-    }
+    );
     let found = pretrained.card().damage_sharpness;
-    if found != DAMAGE_SHARPNESS {
-        refuse!(
-            "the initial weights have `damage_sharpness = {found}`, and a training has \
+    ensure!(
+        found == DAMAGE_SHARPNESS,
+        "the initial weights have `damage_sharpness = {found}`, and a training has \
              {DAMAGE_SHARPNESS}; start with random weights"
-        );
-    }
+    );
     let exact = options(DType::F64);
     let folded = Networks::from_layers(&given, &exact);
     let unchanged = layers(&folded)? == given;
     let centred = affine::is_centred(&pretrained.card().standardisation);
-    if unchanged && centred {
-        return Ok(());
-    }
-    Err(fault!("the initial weights do not have the mirror symmetry; start with random weights"))
+    ensure!(
+        unchanged && centred,
+        "the initial weights do not have the mirror symmetry; start with random weights"
+    );
+    Ok(())
 }
 
 /// The factor of the predictions that is closest to the targets.

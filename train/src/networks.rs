@@ -212,7 +212,7 @@ mod tests {
     use crate::validation::Parity;
     use burn::tensor::DType;
     use dataset::Row;
-    use hinge::{HingeConstants, HingeSample, NetLigament, TrainingDomain};
+    use hinge::{HingeConstants, HingeDeformation, HingeSample, NetLigament, TrainingDomain};
     use surrogate::{
         Card, FEATURE_NAMES, FORMAT_VERSION, Surrogate, TestErrors, UNITS, feature_names,
     };
@@ -239,7 +239,8 @@ mod tests {
     }
 
     fn surrogate(networks: &Networks, scales: &Scales) -> Surrogate {
-        let mut domain = TrainingDomain::from_box([[0.0; 2]; 3], [1.0; 2], [1.0; 2]);
+        let flat = (HingeConstants::PAPER.hinge(1.0, 1.0), HingeDeformation::default());
+        let mut domain = TrainingDomain::covering([flat]).unwrap();
         domain.holes = (scales.features() == FEATURE_NAMES.len()).then_some([0.05, 0.35]);
         let card = Card {
             format_version: FORMAT_VERSION,

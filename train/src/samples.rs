@@ -5,7 +5,7 @@ use burn::tensor::{Tensor, TensorCreationOptions, TensorData};
 use dataset::Row;
 use hinge::{HingeDeformation, HingeDesign, HingeSample, NetLigament};
 use std::array::from_fn;
-use support::{Fault, fault, refuse, statistics};
+use support::{Fault, ensure, fault, statistics};
 use surrogate::{Card, FEATURE_NAMES, Standardisation, feature_names, features};
 
 /// The scales of (14) and (15), computed from the training rows.
@@ -102,13 +102,12 @@ impl Scales {
         for (k, &feature) in names.iter().enumerate() {
             // The rounding error of the mean gives a constant feature a standard deviation of this
             // size.
-            if !(std[k] > 1e-12 * mean[k].abs() && std[k].is_finite()) {
-                refuse!(
-                    "the feature `{feature}` is {} in every training row, so the network cannot \
+            ensure!(
+                std[k] > 1e-12 * mean[k].abs() && std[k].is_finite(),
+                "the feature `{feature}` is {} in every training row, so the network cannot \
                      learn its effect; vary it in the campaign",
-                    mean[k]
-                );
-            }
+                mean[k]
+            );
         }
         let with_peak = rows.iter().filter(|row| row.sample.d_peak.is_some()).count();
         let peak_weight = count / (with_peak as f64).max(1.0);

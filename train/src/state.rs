@@ -13,7 +13,7 @@ use safetensors::tensor::{Dtype, SafeTensors, TensorView};
 use serde::{Deserialize, Deserializer, Serialize};
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
-use support::{Fault, fault, refuse, unread, unwritten};
+use support::{Fault, ensure, fault, unread, unwritten};
 use surrogate::Card;
 
 /// Format version of the file. A state is temporary, so no other version is read.
@@ -128,13 +128,12 @@ impl TrainingState {
             ("network to start from", saved.fine_tuned_from == card.fine_tuned_from),
             ("distillation", saved.distillation == card.distillation),
         ] {
-            if !same {
-                refuse!(
-                    "{} is the state of another training: the {what} is different; continue with \
+            ensure!(
+                same,
+                "{} is the state of another training: the {what} is different; continue with \
                      the original one, or discard it with --replace",
-                    self.path.display()
-                );
-            }
+                self.path.display()
+            );
         }
         Ok(())
     }

@@ -28,7 +28,7 @@ use crate::{
 use hinge::TrainingDomain;
 use serde::Serialize;
 use std::sync::{Arc, atomic::AtomicBool};
-use support::{Fault, Point, fault, refuse, verbose};
+use support::{Fault, Point, ensure, fault, verbose};
 
 /// Why a design has no objective value.
 #[derive(Debug, thiserror::Error)]
@@ -303,9 +303,7 @@ impl DesignProblem {
         deployment: &Deployment,
         outline: &[PanelCorner],
     ) -> Result<ObjectiveValue, DesignError> {
-        if self.objective.shape.target.is_empty() {
-            refuse!("the target has no points");
-        }
+        ensure!(!self.objective.shape.target.is_empty(), "the target has no points");
         deployment.at_full_load()?;
         Ok(self.objective.evaluate(&Deployed {
             sheet: &deployment.sheet,
@@ -331,11 +329,10 @@ impl Mechanics {
     /// The mechanics at `thickness` times the thickness and `stress` times the stress at every
     /// strain. Its weight grows with the thickness; contact is not changed.
     pub(crate) fn scaled(&self, thickness: f64, stress: f64) -> Result<Self, Fault> {
-        if !(thickness > 0.0 && stress > 0.0 && thickness.is_finite() && stress.is_finite()) {
-            refuse!(
-                "a sheet with these errors cannot exist: a ligament, the thickness or the stresses are not positive"
-            );
-        }
+        ensure!(
+            thickness > 0.0 && stress > 0.0 && thickness.is_finite() && stress.is_finite(),
+            "a sheet with these errors cannot exist: a ligament, the thickness or the stresses are not positive"
+        );
         let mut similar =
             Self { law: Arc::clone(&self.law), contact: self.contact, solver: self.solver.clone() };
         if (thickness, stress) != (1.0, 1.0) {

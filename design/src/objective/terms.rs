@@ -192,7 +192,7 @@ mod tests {
         let angles = (0..1000).map(|i| TAU * f64::from(i) / 1000.0);
         let circle = angles.map(|t| [90.0 + 60.0 * t.cos(), 10.0 + 60.0 * t.sin()]);
         let state = [[-0.02, 0.03], [-0.02, 0.02], [0.0, 0.1]];
-        let domain = TrainingDomain::from_box(state, [1.0, 2.5], [0.8, 1.5]);
+        let domain = testkit::domain_of_box(state, [1.0, 2.5], [0.8, 1.5]);
         config.objective(&TermContext {
             target: &circle.collect::<Vec<_>>(),
             law: Some(&Law(domain)),

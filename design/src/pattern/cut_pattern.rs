@@ -28,7 +28,7 @@ use faer::{
 };
 use serde::{Deserialize, Serialize};
 use std::iter::zip;
-use support::{Fault, Point, fault, refuse};
+use support::{Fault, Point, ensure, fault};
 
 /// The fixed outline of the flat sheet: corners SW, SE, NE, NW (mm).
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
@@ -63,14 +63,13 @@ impl Outline {
             let turn = cross(corner(k + 1) - corner(k), corner(k + 2) - corner(k + 1));
             turn > 0.0 && turn.is_finite()
         });
-        if convex {
-            return Ok(());
-        }
-        Err(fault!(
+        ensure!(
+            convex,
             "the outline {:?} is not a convex quadrilateral with its corners counter-clockwise from the \
      south-west",
             self.corners
-        ))
+        );
+        Ok(())
     }
 }
 
@@ -99,9 +98,10 @@ impl CutPattern {
         coordinates: &PatternCoordinates,
     ) -> Result<Self, Fault> {
         let Grid { m, n } = grid;
-        if m < 2 || n < 2 {
-            refuse!("a sheet of {m} x {n} panels has no interior cut: use at least 2 x 2");
-        }
+        ensure!(
+            m >= 2 && n >= 2,
+            "a sheet of {m} x {n} panels has no interior cut: use at least 2 x 2"
+        );
         outline.check()?;
         coordinates.check(grid)?;
         let r: Vec<f64> = coordinates.z.iter().copied().map(logistic).collect();

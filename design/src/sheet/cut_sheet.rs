@@ -31,7 +31,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::iter::zip;
 use std::sync::Arc;
-use support::{Fault, Point, refuse};
+use support::{Fault, Point, ensure, refuse};
 
 /// The point at which the hinge deformation (8) is measured.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -328,9 +328,10 @@ impl Hinge {
         [w_lig, set_back]: [f64; 2],
         options: SheetOptions,
     ) -> Result<Self, Fault> {
-        if !(w_lig > 0.0 && w_lig.is_finite()) {
-            refuse!("w_lig[{hinge}] = {w_lig} mm is not a positive finite number");
-        }
+        ensure!(
+            w_lig > 0.0 && w_lig.is_finite(),
+            "w_lig[{hinge}] = {w_lig} mm is not a positive finite number"
+        );
         let unit = |from: usize, to: usize| {
             let segment = complex(points[to]) - complex(points[from]);
             segment / segment.norm()
@@ -339,12 +340,11 @@ impl Hinge {
         let main = unit(site.corner, site.main_end);
         // m rotated by alpha is e_sec.
         let alpha = cross(main, e_sec).atan2(dot(main, e_sec));
-        if !(alpha > 0.0 && alpha < std::f64::consts::PI) {
-            refuse!(
-                "hinge {hinge} has the cut angle {} deg, outside (0, 180): its cuts have collapsed",
-                alpha.to_degrees()
-            );
-        }
+        ensure!(
+            alpha > 0.0 && alpha < std::f64::consts::PI,
+            "hinge {hinge} has the cut angle {} deg, outside (0, 180): its cuts have collapsed",
+            alpha.to_degrees()
+        );
         let corner = points[site.corner];
         let hinge = Self {
             site,

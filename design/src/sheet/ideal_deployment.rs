@@ -18,14 +18,12 @@ use crate::{
     },
 };
 use faer::c64;
-use support::{Fault, fault};
+use support::{Fault, ensure};
 
 /// An error unless the opening angle (rad) is finite.
 pub fn check_opening(theta: f64) -> Result<(), Fault> {
-    if theta.is_finite() {
-        return Ok(());
-    }
-    Err(fault!("the opening angle {theta} rad is not a finite number"))
+    ensure!(theta.is_finite(), "the opening angle {theta} rad is not a finite number");
+    Ok(())
 }
 
 /// The configuration with every hinge open by `theta` (rad).

@@ -6,7 +6,7 @@ use crate::pattern::grid::{NW, SE, SW};
 use crate::sheet::topology::Trim;
 use faer::c64;
 use std::array::from_fn;
-use support::{Fault, Point, refuse};
+use support::{Fault, Point, ensure};
 
 /// A point of a panel in the flat sheet.
 #[derive(Clone, Copy, Debug, Default)]
@@ -49,11 +49,10 @@ impl Panel {
         let arms: Vec<c64> = boundary.iter().map(|corner| complex(*corner) - mean).collect();
         let sectors = sectors(&arms);
         let area = 0.5 * sectors.iter().sum::<f64>();
-        if !(area > 0.0 && area.is_finite()) {
-            refuse!(
-                "panel {panel} has the area {area} mm^2, which must be positive: its cuts have collapsed"
-            );
-        }
+        ensure!(
+            area > 0.0 && area.is_finite(),
+            "panel {panel} has the area {area} mm^2, which must be positive: its cuts have collapsed"
+        );
         let next = |j: usize| (j + 1) % arms.len();
         let moment: c64 = (0..arms.len()).map(|j| (arms[j] + arms[next(j)]) * sectors[j]).sum();
         let centroid = point(mean + moment / (6.0 * area));

@@ -6,9 +6,9 @@ use design::objective::term::Weighted;
 use design::objective::terms::{
     Compression, DamageFunctional, DomainPenalty, PanelShape, Shear, SymmetricDifference,
 };
-use hinge::TrainingDomain;
 use std::path::Path;
 use surrogate::Surrogate;
+use testkit::domain_of_box;
 
 pub const GRID: Grid = Grid { m: 3, n: 3 };
 /// Side of the sheet (mm).
@@ -61,9 +61,8 @@ pub fn problem(model: Model, hinge_point: HingePoint) -> DesignProblem {
         Model::Equilibrium(mechanics) => Some(&mechanics.law),
     };
     let state = [[-0.02, 0.0], [-0.01, 0.01], [0.0, 0.02]];
-    let domain = DomainPenalty {
-        domain: law.map(|_| TrainingDomain::from_box(state, [15.0, 17.0], [1.5, 1.6])),
-    };
+    let domain =
+        DomainPenalty { domain: law.map(|_| domain_of_box(state, [15.0, 17.0], [1.5, 1.6])) };
     let measure = DamageMeasure::Mean;
     let damage = DamageFunctional {
         measure,

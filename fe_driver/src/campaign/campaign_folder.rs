@@ -11,7 +11,7 @@
 
 use crate::{
     Solve, SolveEvent, SolveListError, SolveStore, Solved, ToolVersions, WindowSolve, entries,
-    host, now, read_json, write_json,
+    host, now, read_json,
 };
 use serde::{Deserialize, Serialize};
 use serde_json::json;
@@ -20,7 +20,7 @@ use std::fs::File;
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
-use support::{Fault, FileError, fault, lock_file, refuse, whole_file};
+use support::{Fault, FileError, fault, lock_file, refuse, sealed_json, whole_file};
 
 /// The folder of a campaign.
 #[derive(Debug)]
@@ -106,7 +106,7 @@ impl CampaignFolder {
                 EventLog::open(&entry.path())?;
             }
         }
-        write_json(&self.index_path(), index)?;
+        sealed_json::write(&self.index_path(), index)?;
         EventLog::open(&home.join(history_name(shard)))
     }
 }

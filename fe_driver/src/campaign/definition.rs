@@ -12,10 +12,9 @@ use hinge::{HingeConstants, Regime, SheetMaterial};
 use mesher::Tier;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use std::fmt::Display;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
-use support::{fault, toml_file};
+use support::{Fault, at, ensure, refuse, toml_file};
 
 /// A campaign with its material, from a TOML file of `configs/campaigns/`.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
@@ -74,21 +73,18 @@ pub enum JobPart {
 
 impl Campaign {
     /// An error if the file has a defect.
-    fn check(&self) -> Result<(), String> {
-        if self.name.is_empty() || self.name.chars().any(char::is_control) {
-            return Err("name is empty or holds a control character".to_owned());
-        }
-        if self.boxes.is_empty() {
-            return Err("it has no [[rays]]".to_owned());
-        }
+    fn check(&self) -> Result<(), Fault> {
+        ensure!(
+            !self.name.is_empty() && !self.name.chars().any(char::is_control),
+            "name is empty or holds a control character"
+        );
+        ensure!(!self.boxes.is_empty(), "it has no [[rays]]");
         let needs_finer = self.boxes.iter().any(|rays| rays.finer > 0);
         match self.finer_tier {
-            None if needs_finer => return Err("finer needs finer_tier".to_owned()),
+            None if needs_finer => refuse!("finer needs finer_tier"),
             Some(finer) if finer.regime() != self.tier.regime() || finer <= self.tier => {
                 let tier = self.tier;
-                return Err(format!(
-                    "finer_tier = \"{finer}\" is no finer mesh than tier = \"{tier}\""
-                ));
+                refuse!("finer_tier = \"{finer}\" is no finer mesh than tier = \"{tier}\"");
             }
             _ => {}
         }
@@ -103,11 +99,11 @@ impl Campaign {
         };
         let mut boxes = self.boxes.iter();
         let defect = boxes.clone().find_map(RayBox::defect).or_else(|| boxes.find_map(impossible));
-        defect.map_or(Ok(()), Err)
+        defect.map_or(Ok(()), |defect| Err(defect.into()))
     }
 
     /// An error if the tier is not for all ligaments of the box.
-    fn check_regime(&self) -> Result<(), String> {
+    fn check_regime(&self) -> Result<(), Fault> {
         let (regime, material) = (self.tier.regime(), &self.material);
         let other = |w_lig: &f64| material.regime(*w_lig) != regime;
         let Some(w_lig) = self.boxes.iter().flat_map(|rays| rays.w_lig).find(other) else {
@@ -115,24 +111,21 @@ impl Campaign {
         };
         let (tier, thickness) = (self.tier, material.thickness);
         let bound = Regime::WIDEST_PLATE * thickness;
-        Err(format!(
+        refuse!(
             "tier = \"{tier}\" is for ligaments of a {regime}, but rays.w_lig contains {w_lig} mm: ligaments of up to \
              {bound} mm bend in the plane of a sheet of {thickness} mm (tier \"plate\"), wider ones buckle (tier \
              \"default\"), and no energy holds for both"
-        ))
+        )
     }
 
     /// Reads a campaign, its material and its further rays.
     pub fn load(path: &Path) -> Result<Self, SolveListError> {
-        let other = |error: &dyn Display| fault!("{error}");
-        let mut campaign: Self = toml_file::read(path).map_err(|error| other(&error))?;
-        let invalid = |reason: String| fault!("{}: {reason}", path.display());
-        campaign.check().map_err(invalid)?;
+        let mut campaign: Self = toml_file::read(path)?;
+        campaign.check().map_err(at(path.display()))?;
         let folder = path.parent().unwrap_or(Path::new(""));
-        let material = SheetMaterial::load(&folder.join(&campaign.material_file));
-        campaign.material = material.map_err(|error| other(&error))?;
+        campaign.material = SheetMaterial::load(&folder.join(&campaign.material_file))?;
         campaign.time_limit = campaign.tier_of(JobPart::Finer).time_limit();
-        campaign.check_regime().map_err(invalid)?;
+        campaign.check_regime().map_err(at(path.display()))?;
         let named = campaign.training.iter_mut();
         for file in named.chain(&mut campaign.pretrained) {
             *file = folder.join(&*file);

@@ -140,7 +140,7 @@ mod tests {
     #[test]
     fn states_are_uniform_inside_the_domain() {
         let state = [[-0.8, 0.2], [-0.4, 0.4], [-0.1, 1.3]];
-        let mut domain = TrainingDomain::from_box(state, [5.0, 25.0], [0.8, 2.3]);
+        let mut domain = testkit::domain_of_box(state, [5.0, 25.0], [0.8, 2.3]);
         domain.holes = Some([0.1, 0.3]);
         let drawn = DrawnStates {
             domain: &domain,

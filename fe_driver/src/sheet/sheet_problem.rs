@@ -9,7 +9,7 @@ use hinge::SheetMaterial;
 use mesher::{Panels, SheetShape, Tier};
 use serde::{Deserialize, Serialize};
 use support::interpolation::piece;
-use support::{Fault, Point, refuse};
+use support::{Fault, Point, ensure, refuse};
 
 /// Version of the geometry, the input deck and the evaluation of sheets. It is increased when a
 /// change of the code changes results; solves of an older version are then stale.
@@ -149,18 +149,16 @@ impl SheetProblem {
     /// An error if the problem has no solution.
     pub fn validate(&self) -> Result<(), Fault> {
         let moves = |held: &HeldPanel| held.motion.into_iter().flatten().any(|shift| shift != 0.0);
-        if self.total_load() == 0.0 && !self.held.iter().any(moves) {
-            refuse!("nothing pulls the sheet: it needs a load, or a support that moves");
-        }
-        if self.held.is_empty() {
-            refuse!("no panel is held: the sheet is free to move");
-        }
-        if self.restraint == OutOfPlaneRestraint::Nothing && !self.is_held_upright() {
-            refuse!(
-                "nothing keeps the sheet in its plane, and no panel is clamped: it would fall out of it; clamp a panel, pin three \
+        ensure!(
+            self.total_load() != 0.0 || self.held.iter().any(moves),
+            "nothing pulls the sheet: it needs a load, or a support that moves"
+        );
+        ensure!(!self.held.is_empty(), "no panel is held: the sheet is free to move");
+        ensure!(
+            self.restraint != OutOfPlaneRestraint::Nothing || self.is_held_upright(),
+            "nothing keeps the sheet in its plane, and no panel is clamped: it would fall out of it; clamp a panel, pin three \
      that are not on one line, or hold it flat"
-            );
-        }
+        );
         if self.shape.model == Panels::Rigid
             && (self.contact || self.restraint == OutOfPlaneRestraint::Table)
         {

@@ -7,14 +7,13 @@
 //! stays open.
 
 use crate::{
-    AttemptKind, Cause, Solution, Solve, SolveError, SolveFolder, SolveRecord, SolvedPath, Solver,
-    WindowSolve,
+    AttemptKind, Cause, Solution, Solve, SolveFolder, SolveRecord, SolvedPath, Solver, WindowSolve,
 };
 use serde::Serialize;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 use support::worker_pool::{NoThread, Reports, work_through};
-use support::{Fault, FileError};
+use support::{Fault, FileError, refuse};
 
 /// Why a list of solves ended before its last solve. What was solved until then is kept.
 #[derive(Debug, thiserror::Error)]
@@ -26,15 +25,8 @@ pub enum SolveListError {
     File(#[from] FileError),
     #[error(transparent)]
     Thread(#[from] NoThread),
-    #[error("the run was stopped by an error at job {job}: {source}")]
-    Halted { job: String, source: Box<SolveError> },
     #[error("stopped with {left} solves left")]
     Stopped { left: usize },
-    #[error(
-        "{left} solves are open: the machine ended each of their attempts, the last of {job} because {reason}; what is \
-         solved is kept, and the same command continues"
-    )]
-    Disturbed { left: usize, job: String, reason: String },
 }
 
 /// Number of times that an attempt is made which the machine ends.
@@ -178,8 +170,7 @@ impl<S: Solve> Workers<'_, S> {
                     return Ok(Some(SolveEvent::Disturbed { attempt, reason: error.message }));
                 }
                 Cause::Run => {
-                    let (job, source) = (job.id.clone(), Box::new(error));
-                    return Err(SolveListError::Halted { job, source });
+                    refuse!("the run was stopped by an error at job {}: {error}", job.id)
                 }
             },
         };

@@ -9,14 +9,14 @@
 
 use crate::{
     AttemptKind, FailureKind, Solve, SolvedPath, WindowSolve, damaged, entries, read_json,
-    unless_damaged, write_json,
+    unless_damaged,
 };
 use mesher::Tier;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 use std::io;
 use std::path::{Path, PathBuf};
-use support::{FileError, processes, regular_file, whole_file};
+use support::{FileError, processes, regular_file, sealed_json, whole_file};
 
 /// The state of a solve after its last attempt.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -200,7 +200,7 @@ impl SolveFolder {
 
     pub(crate) fn write_solve<S: Solve>(&self, solve: &S) -> Result<(), FileError> {
         whole_file::create_folder(&self.0).map_err(FileError::at(&self.0))?;
-        write_json(&self.0.join("job.json"), solve)
+        sealed_json::write(&self.0.join("job.json"), solve)
     }
 
     /// Writes the samples so that every number is read back exactly; returns the hash of the file.
@@ -213,7 +213,7 @@ impl SolveFolder {
 
     pub(crate) fn write_record(&self, record: &SolveRecord) -> Result<(), FileError> {
         let job = self.id();
-        write_json(&self.0.join(RECORD), &JobRecord { job, record })
+        sealed_json::write(&self.0.join(RECORD), &JobRecord { job, record })
     }
 
     /// The record of the solve if its files are consistent; `None` if no attempt has ended, or if

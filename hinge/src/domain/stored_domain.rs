@@ -126,23 +126,6 @@ impl TrainingDomain {
         Some(domain)
     }
 
-    /// The domain of a box of states; an interval may have zero length.
-    pub fn from_box(state: [[f64; 2]; 3], w_lig: [f64; 2], alpha: [f64; 2]) -> Self {
-        let mut domain = Self {
-            w_lig,
-            alpha,
-            holes: None,
-            mean_path: [0.0; 2],
-            centre: state.map(|[minimum, maximum]| 0.5 * (minimum + maximum)),
-            half_range: state.map(|[minimum, maximum]| (0.5 * (maximum - minimum)).max(LEAST_SIZE)),
-            supports: Vec::new(),
-        };
-        let corners = (0..8).map(|k| from_fn(|i| state[i][(k >> i) & 1]));
-        let corners: Vec<[f64; 3]> = corners.map(|corner| domain.scaled(corner)).collect();
-        domain.supports = vec![domain.support(corners)];
-        domain
-    }
-
     /// s(m) of scaled states and of the flat state, which must be inside the domain.
     fn support(&self, states: impl IntoIterator<Item = [f64; 3]>) -> [f64; DIRECTIONS] {
         let flat = self.scaled([0.0; 3]);

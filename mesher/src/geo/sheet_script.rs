@@ -5,7 +5,7 @@ use super::Script;
 use super::structured::{self, Rim};
 use crate::{Frame, Panels, PlacedWindow, SheetShape, Window, cross, dot, minus, unit};
 use std::iter::zip;
-use support::{Point, add_line};
+use support::{Fault, Point, add_line, refuse};
 
 /// Largest distance of a point on the edge of a panel from it (mm).
 const ON_EDGE: f64 = 1e-6;
@@ -16,7 +16,7 @@ const COARSEST: f64 = 1.1;
 
 /// The script of a sheet. Its faces are named after the panels, 1 and those after it, and then
 /// after the windows.
-pub(crate) fn sheet_script(shape: &SheetShape) -> Result<String, String> {
+pub(crate) fn sheet_script(shape: &SheetShape) -> Result<String, Fault> {
     let mut geo = Script::default();
     let size = COARSEST * shape.element_size;
     add_line!(geo.text, "Mesh.MeshSizeMax = {size:?};");
@@ -70,7 +70,7 @@ struct PanelOutline<'a> {
 
 impl PanelOutline<'_> {
     /// Adds the panel as one surface, and returns its number.
-    fn add(&self, geo: &mut Script) -> Result<i32, String> {
+    fn add(&self, geo: &mut Script) -> Result<i32, Fault> {
         let panel = &self.shape.panels[self.panel];
         // Where the outline reaches and leaves each corner, counter-clockwise: one point, or the
         // ends of an arc, which is passed clockwise.
@@ -114,7 +114,7 @@ impl PanelOutline<'_> {
         corner: usize,
         [from, to]: [(i32, Point); 2],
         marks: &mut Vec<Point>,
-    ) -> Result<Vec<i32>, String> {
+    ) -> Result<Vec<i32>, Fault> {
         let panel = &self.shape.panels[self.panel];
         let [first, last] = panel.edge(corner);
         let direction = unit(first, last);
@@ -125,10 +125,10 @@ impl PanelOutline<'_> {
         let least = radius.map_or(0.0, |radius| LEAST * radius);
         if length <= least {
             let (panel, short, [x, y]) = (self.panel, least - length, first);
-            return Err(format!(
+            refuse!(
                 "panel {panel} is too small for its windows: its edge from ({x:.1}, {y:.1}) mm is {short} mm too \
                  short; use a smaller r_win or larger panels"
-            ));
+            );
         }
         let across = |point: Point| cross(direction, minus(point, from.1)).abs();
         let mut stops: Vec<f64> = Vec::new();
@@ -158,7 +158,7 @@ impl PanelOutline<'_> {
     }
 
     /// The arc about a corner ends on the two edges that meet there.
-    fn check_arc(&self, corner: usize, arc: &Arc) -> Result<(), String> {
+    fn check_arc(&self, corner: usize, arc: &Arc) -> Result<(), Fault> {
         let panel = &self.shape.panels[self.panel];
         let edges = [panel.edge_before(corner), corner];
         for (edge, end) in zip(edges, [arc.ends[1], arc.ends[0]]) {
@@ -166,17 +166,17 @@ impl PanelOutline<'_> {
             let off = cross(unit(from, to), minus(end, from)).abs();
             if off > ON_EDGE {
                 let (window, panel) = (arc.number, self.panel);
-                return Err(format!(
+                refuse!(
                     "the window of hinge {window} does not end on the edges of panel {panel}: it is {off} mm away \
                      from them"
-                ));
+                );
             }
         }
         Ok(())
     }
 
     /// A mark in the interior is in the panel and outside of its windows.
-    fn check_mark(&self, mark: Point) -> Result<(), String> {
+    fn check_mark(&self, mark: Point) -> Result<(), Fault> {
         let panel = &self.shape.panels[self.panel];
         let [x, y] = mark;
         let to_the_right = |corner: &usize| {
@@ -197,8 +197,8 @@ impl PanelOutline<'_> {
             return Ok(());
         };
         let panel = self.panel;
-        Err(format!(
+        refuse!(
             "the point ({x:.3}, {y:.3}) mm at which panel {panel} is held or pulled {what}: move it"
-        ))
+        )
     }
 }

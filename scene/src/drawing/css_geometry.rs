@@ -3,7 +3,7 @@
 
 use simplecss::{AttributeOperator, DeclarationTokenizer, PseudoClass, StyleSheet};
 use std::collections::HashMap;
-use support::Fault;
+use support::{Fault, refuse};
 use usvg::roxmltree::{Document, Node};
 
 /// The namespace of SVG.
@@ -64,10 +64,9 @@ pub(super) fn refuse_unread(document: &Document) -> Result<(), Fault> {
             })
         };
         if let Some((name, value)) = unread.or_else(other) {
-            return Err(format!(
+            refuse!(
                 "the style `{name}: {value}` is not read; apply it in the drawing program, or write it as an attribute"
-            )
-            .into());
+            );
         }
     }
     Ok(())

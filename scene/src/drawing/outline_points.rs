@@ -6,7 +6,7 @@
 use crate::drawing::{contour::Contour, drawn_outline::listed, joined_lines::joined};
 use std::path::Path;
 use support::{
-    Fault, Point, at, text_file,
+    Fault, Point, at, fault, text_file,
     text_table::{TextRow, TextTable},
 };
 
@@ -25,7 +25,7 @@ pub(crate) fn read(path: &Path) -> Result<Vec<Point>, Fault> {
     let file = path.display();
     let text =
         text_file::read(path).map_err(at(format!("cannot read the target outline {file}")))?;
-    points(&text).map_err(|(line, what)| format!("{file}:{line}: {what}").into())
+    points(&text).map_err(|(line, what)| fault!("{file}:{line}: {what}"))
 }
 
 /// The points of a text (mm); an error has the number of its line.

@@ -1,7 +1,7 @@
 //! `kirigami campaign collect`
 
 use super::campaign_args::{CampaignArgs, DATABASE, SPOT_CHECK};
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result, ensure};
 use app::output_file;
 use clap::Args;
 use dataset::{Collected, Database, SplitPlan};
@@ -37,12 +37,11 @@ impl CollectCommand {
         let parts = fe_driver::known_parts(&campaign, &folder)?;
         let tally = fe_driver::status(&folder)?.tally;
         let missing = missing(&tally);
-        if tally.to_run() > 0 && !self.partial {
-            bail!(
-                "{missing} in {}: run the campaign, or pass --partial to collect without them",
-                folder.display()
-            );
-        }
+        ensure!(
+            tally.to_run() == 0 || self.partial,
+            "{missing} in {}: run the campaign, or pass --partial to collect without them",
+            folder.display()
+        );
         let out = self.out.clone().unwrap_or_else(|| folder.join(DATABASE));
         let of_spot = out.with_file_name(SPOT_CHECK);
         if campaign.spot_rays > 0 && !self.replace {

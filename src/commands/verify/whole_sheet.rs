@@ -7,7 +7,7 @@ use crate::{
     },
     ui::interrupt,
 };
-use anyhow::{Result, anyhow, bail};
+use anyhow::{Result, anyhow, ensure};
 use app::{
     design_checks::record,
     output_file, picture,
@@ -72,9 +72,11 @@ impl VerifyCommand {
         if let Some(found) = check.summary().filter(|_| self.inspected.chosen().is_run(scene)) {
             record(scene, design, |checks| checks.whole_sheet = Some(found))?;
         }
-        if check.path.is_empty() {
-            bail!("no increment of the sheet converged; see {}", self.out.display());
-        }
+        ensure!(
+            !check.path.is_empty(),
+            "no increment of the sheet converged; see {}",
+            self.out.display()
+        );
         Ok(())
     }
 

@@ -1,5 +1,5 @@
-//! What the tests of several crates share: derivatives, running processes, a CalculiX that is a
-//! script.
+//! What the tests of several crates share: derivatives, training domains, running processes, a
+//! CalculiX that is a script.
 //!
 //! ```
 //! use testkit::derivatives::TaylorRemainders;
@@ -10,8 +10,10 @@
 //! ```
 
 pub mod derivatives;
+mod domain_of_box;
 mod fake_ccx;
 mod processes;
 
+pub use domain_of_box::domain_of_box;
 pub use fake_ccx::{failing_ccx, fake_ccx};
 pub use processes::left_running;

@@ -96,7 +96,7 @@ mod tests {
 
     fn domain() -> TrainingDomain {
         let state = [[-0.8, 0.2], [-0.4, 0.4], [-0.1, 1.3]];
-        TrainingDomain::from_box(state, [5.0, 25.0], [0.8, 2.3])
+        testkit::domain_of_box(state, [5.0, 25.0], [0.8, 2.3])
     }
 
     /// x = (a, s, theta, w_lig, alpha, rho_f)
