@@ -378,7 +378,7 @@ mod tests {
 
     #[test]
     fn a_box_a_single_state_and_no_state_are_handled() {
-        let state = [[-0.5, 0.2], [-0.4, 0.4], [0.0, 1.2]];
+        let state = [[-0.5, 0.25], [-0.5, 0.5], [0.0, 1.25]];
         let corner = |k: usize| [0, 1, 2].map(|i: usize| state[i][(k >> i) & 1]);
         let ends = |k| {
             let [eta_a, eta_s, theta] = corner(k);
@@ -389,8 +389,8 @@ mod tests {
         let deep = |eta_a, eta_s, theta| {
             boxed.depth(&design(9.0), &HingeDeformation::from_eta(eta_a, eta_s, theta, 9.0))
         };
-        assert!(deep(-0.15, 0.38, 0.6) > 0.0 && deep(-0.15, 0.42, 0.6) < 0.0);
-        assert!(deep(0.0, 0.0, 0.0) > 0.0 && deep(-0.15, 0.0, 0.6) == 1.0);
+        assert!(deep(-0.125, 0.475, 0.625) > 0.0 && deep(-0.125, 0.525, 0.625) < 0.0);
+        assert!(deep(0.0, 0.0, 0.0) > 0.0 && deep(-0.125, 0.0, 0.625) == 1.0);
         assert!(!boxed.contains(&design(4.0), &HingeDeformation::default()));
         let one = domain(&[(design(9.0), HingeDeformation { a: 1.0, s: 0.0, theta: 0.5 })]);
         assert!(one.contains(&design(9.0), &HingeDeformation::default()));
