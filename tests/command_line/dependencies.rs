@@ -44,8 +44,7 @@ fn packages() -> Vec<Value> {
 /// Whether a licence expression can be met by the list: `and` of alternatives.
 fn is_allowed(expression: &str) -> bool {
     let expression = expression.replace(['(', ')'], "").replace('/', " OR ");
-    let mut all = expression.split(" AND ");
-    all.all(|any| any.split(" OR ").any(|licence| LICENCES.contains(&licence.trim())))
+    expression.split(" AND ").all(|any| any.split(" OR ").any(|it| LICENCES.contains(&it.trim())))
 }
 
 /// The version of a Rust as numbers.

@@ -103,8 +103,7 @@ fn type_name(property: &Value) -> Option<&str> {
 /// Whether a type has keys of its own.
 fn has_keys(definition: &Value) -> bool {
     let alternatives = definition["oneOf"].as_array().into_iter().flatten();
-    let mut all = std::iter::once(definition).chain(alternatives);
-    all.any(|schema| schema.get("properties").is_some())
+    std::iter::once(definition).chain(alternatives).any(|it| it.get("properties").is_some())
 }
 
 /// One row a key: its type, its range, its default or whether it must be given, its meaning.

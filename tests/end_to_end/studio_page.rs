@@ -353,8 +353,7 @@ fn picture_under_sliders(tab: &mut Tab, studio: &Studio, work: &Workplace) {
     assert_eq!(tab.value("fit.side").as_f64(), Some(side));
     // A click on a panel takes it out, a click on its place adds it again.
     let panels = tab.value("fit.panels").as_u64().unwrap();
-    tab.click("[value=cells]");
-    tab.value("spot = meanOf(boundariesDrawn[0])");
+    tab.value("document.querySelector('[value=cells]').click(); spot = meanOf(boundariesDrawn[0])");
     let pick = |tab: &mut Tab| _ = tab.value("askCell(spot)");
     after(tab, pick);
     assert!(tab.value("fit.panels").as_u64().unwrap() < panels);

@@ -9,8 +9,7 @@ use std::path::{Path, PathBuf};
 
 /// A scene file of the repository.
 fn shipped(name: &str) -> PathBuf {
-    let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("../configs/scenes");
-    scenes.join(name)
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../configs/scenes").join(name)
 }
 
 /// A scene of the repository, changed.

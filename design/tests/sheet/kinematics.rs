@@ -26,11 +26,6 @@ fn with_motion(sheet: &Sheet, hinge: usize, q: &Configuration, motion: &[f64]) -
     q
 }
 
-fn motion_of(sheet: &Sheet, hinge: usize, q: &Configuration) -> [f64; 6] {
-    let [a, b] = [sheet.hinges[hinge].panel_a(), sheet.hinges[hinge].panel_b()].map(|k| q[k]);
-    [a[0], a[1], a[2], b[0], b[1], b[2]]
-}
-
 fn unit<const N: usize>(i: usize) -> [f64; N] {
     std::array::from_fn(|j| f64::from(i == j))
 }
@@ -46,7 +41,8 @@ fn first_and_second_derivatives_in_the_panel_motions() {
     let mut random = Random::new(2);
     let q = random.arrays(sheet.panels.len(), 0.7);
     for h in 0..sheet.hinges.len() {
-        let x = motion_of(&sheet, h, &q);
+        let [a, b] = [sheet.hinges[h].panel_a(), sheet.hinges[h].panel_b()].map(|k| q[k]);
+        let x = [a[0], a[1], a[2], b[0], b[1], b[2]];
         let motion = HingeMotion::new(&sheet, h, &q);
         // W = f . eps + eps . K eps / 2 with a full K.
         let linear: [f64; 3] = random.arrays(1, 1.0)[0];

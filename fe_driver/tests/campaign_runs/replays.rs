@@ -100,17 +100,15 @@ const FAULTS: [&str; 7] = [
 /// A solver that does not end.
 const HANGS: &str = "sleep 1000 & sleep 1000";
 
-/// The script, run only in the first two attempts of each job.
-fn twice(script: &str) -> String {
-    format!("echo >> ../failed; if [ $(wc -l < ../failed) -lt 3 ]; then {script}; fi")
-}
-
 #[test]
 fn a_transient_fault_does_not_change_the_results() {
     for script in FAULTS {
         let folder = tempfile::tempdir().unwrap();
         let campaign = campaign(RAYS);
-        let tools = replaying(folder.path(), &twice(script));
+        // The script runs only in the first two attempts of each job.
+        let twice =
+            format!("echo >> ../failed; if [ $(wc -l < ../failed) -lt 3 ]; then {script}; fi");
+        let tools = replaying(folder.path(), &twice);
         let tally = run_whole(&campaign, folder.path(), &tools);
         assert_eq!(tally.complete, RAYS, "{script}");
         assert_eq!(timeless(&jobs(folder.path())), timeless(&RECORDING.jobs), "{script}");

@@ -31,9 +31,8 @@ const FILLET_RATIO: f64 = 0.16;
 const KERF: f64 = 0.2;
 
 fn material() -> SheetMaterial {
-    let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
-    let film = root.join("../configs/materials/pet-0.5mm.toml");
-    SheetMaterial::load(&film).unwrap()
+    let film = "../configs/materials/pet-0.5mm.toml";
+    SheetMaterial::load(&std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join(film)).unwrap()
 }
 
 fn least(values: impl Iterator<Item = f64>) -> f64 {
