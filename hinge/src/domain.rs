@@ -26,7 +26,7 @@
 mod directions;
 mod stored_domain;
 
-use crate::domain::directions::{DIRECTION, DIRECTIONS, EXPONENT, norm};
+use crate::domain::directions::{DIRECTION, DIRECTIONS, EXPONENT, ROUNDED, norm};
 use crate::net_ligament::{NetLigament, NetLigamentJet};
 use crate::{HingeConstants, HingeDeformation, HingeDesign, Jet};
 use serde::{Deserialize, Serialize};
@@ -55,10 +55,20 @@ pub struct TrainingDomain {
     supports: Vec<[f64; DIRECTIONS]>,
 }
 
+/// The domain of one hinge: the states of its width.
+#[derive(Clone, Debug)]
+pub struct Section {
+    ligament: NetLigament,
+    /// Width of the hinge in whose measures the domain is (mm).
+    w_lig: f64,
+    /// s(m)
+    supports: [f64; DIRECTIONS],
+}
+
 impl TrainingDomain {
     /// Whether the state of one hinge lies in the domain.
     pub fn contains(&self, design: &HingeDesign, deformation: &HingeDeformation) -> bool {
-        self.has_ligament(design) && self.depth(design, deformation) >= 0.0
+        self.has_ligament(design) && !self.is_beyond(1.0, &self.section(design), deformation)
     }
 
     /// Whether the width, the angle and the hole of a ligament are within their intervals.
@@ -77,12 +87,30 @@ impl TrainingDomain {
 
     /// The gauge gamma.
     pub fn gauge(&self, design: &HingeDesign, deformation: &HingeDeformation) -> f64 {
-        let y = self.scaled(self.coordinates(design, deformation));
+        norm(self.ratios(&self.section(design), deformation))
+    }
+
+    /// Whether the gauge is above a limit, for a hinge with the given section.
+    pub fn is_beyond(&self, limit: f64, section: &Section, deformation: &HingeDeformation) -> bool {
+        let ratios = self.ratios(section, deformation);
+        ratios.into_iter().fold(0.0, f64::max) * ROUNDED > limit && norm(ratios) > limit
+    }
+
+    /// The domain of a hinge.
+    pub fn section(&self, design: &HingeDesign) -> Section {
+        let ligament = self.ligament(design);
         let (row, [blend, ..]) = self.place(design.w_lig);
-        norm(from_fn(|m| {
-            let support = self.supports[row][m] + blend * self.rise(row, m);
-            dot(&DIRECTION[m], &y) / support
-        }))
+        Section {
+            ligament,
+            w_lig: ligament.design(design).w_lig,
+            supports: from_fn(|m| self.supports[row][m] + blend * self.rise(row, m)),
+        }
+    }
+
+    /// m . y / s(m; w_lig)
+    fn ratios(&self, section: &Section, deformation: &HingeDeformation) -> [f64; DIRECTIONS] {
+        let y = self.scaled(self.measured(section, deformation));
+        from_fn(|m| dot(&DIRECTION[m], &y) / section.supports[m])
     }
 
     /// The gauge gamma with its derivatives in (a, s, theta, w_lig, rho_f). At the centre they do
@@ -128,9 +156,12 @@ impl TrainingDomain {
     /// The coordinates in which the domain is a rounded polytope: (eta_a, eta_s, theta), eta_a from
     /// the mean path.
     pub fn coordinates(&self, design: &HingeDesign, deformation: &HingeDeformation) -> [f64; 3] {
-        let ligament = self.ligament(design);
-        let seen = ligament.deformation(deformation);
-        let [eta_a, eta_s] = seen.eta(ligament.design(design).w_lig);
+        self.measured(&self.section(design), deformation)
+    }
+
+    fn measured(&self, section: &Section, deformation: &HingeDeformation) -> [f64; 3] {
+        let seen = section.ligament.deformation(deformation);
+        let [eta_a, eta_s] = seen.eta(section.w_lig);
         [eta_a - self.mean_path(seen.theta), eta_s, seen.theta]
     }
 

@@ -49,7 +49,7 @@ mod sample;
 
 pub use deformation::HingeDeformation;
 pub use design::{HingeConstants, HingeDesign, InvalidDesign, MIN_W_LIG};
-pub use domain::TrainingDomain;
+pub use domain::{Section, TrainingDomain};
 pub use gradient::{DesignGradient, HingeGradient};
 pub use jet::Jet;
 pub use material::{Creep, STANDARD_GRAVITY, SheetMaterial};

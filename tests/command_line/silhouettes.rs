@@ -75,7 +75,7 @@ fn a_search_after_which_less_is_seen_is_a_warning() {
     work.output("init star --target configs/targets/star.svg --thickness 2 --size 180x180");
     work.prints(
         "design star/scene.toml --level draft --steps 10",
-        &["warning: after the search 94.", "% of the target is seen, before it 95"],
+        &["warning: after the search 95.5 % of the target is seen, before it 95.8 %"],
     );
 }
 

@@ -365,8 +365,7 @@ fn mirror_axis(drawing: &Region) -> Option<(f64, [f64; 2])> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fit::even_pattern::Opening;
-    use crate::fit::even_pattern::{hinge, pairs};
+    use crate::fit::even_pattern::{Opening, hinge, pairs};
     use design::geometry::polygon::{area, self_crossing};
     use rand::{RngExt, SeedableRng};
     use rand_chacha::ChaCha8Rng;

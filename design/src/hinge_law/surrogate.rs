@@ -18,7 +18,7 @@ use crate::hinge_law::law::{
     DamageMeasure, DesignGradient, HingeDamage, HingeEnergy, HingeGradient, HingeLaw, Order,
     PreparedLaw,
 };
-use hinge::{HingeDeformation, HingeDesign, Jet, TrainingDomain};
+use hinge::{HingeDeformation, HingeDesign, Jet, Section, TrainingDomain};
 use std::iter::zip;
 use std::{array::from_fn, ops::Deref, sync::Arc};
 use surrogate::{Prepared, Surrogate};
@@ -74,6 +74,8 @@ impl HingeLaw for SurrogateLaw {
 pub struct PreparedSurrogate<S> {
     surrogate: S,
     designs: Vec<HingeDesign>,
+    /// Training domain of each.
+    sections: Vec<Section>,
     /// d(mapped cut angle) / d(cut angle of the hinge), per hinge.
     angle_slopes: Vec<f64>,
     /// Prepared for the mapped cut angles.
@@ -92,6 +94,7 @@ impl<S: Deref<Target = Surrogate>> PreparedSurrogate<S> {
             .unzip();
         Self {
             designs: designs.to_vec(),
+            sections: designs.iter().map(|design| surrogate.domain().section(design)).collect(),
             angle_slopes,
             prepared: surrogate.prepare(&mapped),
             surrogate,
@@ -105,10 +108,10 @@ impl<S: Deref<Target = Surrogate>> PreparedSurrogate<S> {
         deformations: &[HingeDeformation],
     ) -> (Vec<HingeDeformation>, Vec<Option<Continuation>>) {
         let domain = self.surrogate.domain();
-        let hinges = zip(&self.designs, deformations);
+        let hinges = zip(zip(&self.designs, &self.sections), deformations);
         hinges
-            .map(|(design, deformation)| {
-                let beyond = domain.gauge(design, deformation) > 1.0;
+            .map(|((design, section), deformation)| {
+                let beyond = domain.is_beyond(1.0, section, deformation);
                 let beyond = beyond.then(|| Continuation::new(domain, design, deformation));
                 let mapped = beyond.as_ref().map_or(*deformation, Continuation::mapped);
                 (mapped, beyond)

@@ -96,11 +96,8 @@ impl<S: Solve> SolveService<'_, S> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::solve::failure::AttemptKind;
-    use crate::solve::failure::FailureKind;
-    use crate::solve::failure::SolveError;
-    use crate::solve::solver::Solution;
-    use crate::solve::solver::SolvedPath;
+    use crate::solve::failure::{AttemptKind, FailureKind, SolveError};
+    use crate::solve::solver::{Solution, SolvedPath};
     use crate::solve::tests::{FakeSolver, Fault, STIFFNESS, healthy, solve_to};
     use crate::solve::window_solve::StepControl;
     use mesher::Tier;

@@ -6,6 +6,9 @@ pub(super) const DIRECTIONS: usize = 26;
 /// centre.
 pub(super) const EXPONENT: f64 = 24.0;
 
+/// At least the ratio of the norm to the largest of its terms, 26^(1/24).
+pub(super) const ROUNDED: f64 = 1.15;
+
 /// The directions m.
 pub(super) const DIRECTION: [[f64; 3]; DIRECTIONS] = {
     let mut directions = [[0.0; 3]; DIRECTIONS];

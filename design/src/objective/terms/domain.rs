@@ -70,7 +70,7 @@ fn excess_of_state(
     let angle = excess(domain.alpha, design.alpha);
     let mut value = width.0 + angle.0;
     let mut gradient = HingeGradient::from([0.0, 0.0, 0.0, width.1, angle.1, 0.0]);
-    if domain.gauge(design, state) > EDGE {
+    if domain.is_beyond(EDGE, &domain.section(design), state) {
         let gauge = domain.gauge_jet(design, state);
         let scaled = PER_HALF_RANGE * (gauge.value - EDGE);
         value += scaled * scaled;
