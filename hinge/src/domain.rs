@@ -109,7 +109,7 @@ impl TrainingDomain {
 
     /// m . y / s(m; w_lig)
     fn ratios(&self, section: &Section, deformation: &HingeDeformation) -> [f64; DIRECTIONS] {
-        let y = self.scaled(self.measured(section, deformation));
+        let y = self.scaled(self.measured(&section.ligament, section.w_lig, deformation));
         from_fn(|m| dot(&DIRECTION[m], &y) / section.supports[m])
     }
 
@@ -156,12 +156,13 @@ impl TrainingDomain {
     /// The coordinates in which the domain is a rounded polytope: (eta_a, eta_s, theta), eta_a from
     /// the mean path.
     pub fn coordinates(&self, design: &HingeDesign, deformation: &HingeDeformation) -> [f64; 3] {
-        self.measured(&self.section(design), deformation)
+        let ligament = self.ligament(design);
+        self.measured(&ligament, ligament.design(design).w_lig, deformation)
     }
 
-    fn measured(&self, section: &Section, deformation: &HingeDeformation) -> [f64; 3] {
-        let seen = section.ligament.deformation(deformation);
-        let [eta_a, eta_s] = seen.eta(section.w_lig);
+    fn measured(&self, by: &NetLigament, w_lig: f64, actual: &HingeDeformation) -> [f64; 3] {
+        let seen = by.deformation(actual);
+        let [eta_a, eta_s] = seen.eta(w_lig);
         [eta_a - self.mean_path(seen.theta), eta_s, seen.theta]
     }
 

@@ -451,7 +451,7 @@ mod tests {
         assert!(less.loops.is_subset(&sheet.loops) && !less.panels.contains_key(&end));
         assert!(toggle(&less.loops, end).unwrap().panels.contains_key(&end));
         let refused = |loops: &_, cell| toggle(loops, cell).unwrap_err().to_string();
-        assert!(refused(&[0, 1, 2].map(|i| [i, 0]).into(), [1, 0]).contains("no mechanism"));
+        assert!(refused(&[0, 1, 2, 3].map(|i| [i, 0]).into(), [2, 0]).contains("no mechanism"));
         assert!(refused(&sheet.loops, [end[0] - 9, end[1]]).contains("outside of the target"));
     }
 
