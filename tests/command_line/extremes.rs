@@ -21,7 +21,7 @@ const SWEEPS: [Sweep; 6] = [
         change: |scene, stroke| scene.drive.as_mut().unwrap().stroke = stroke,
     },
     Sweep {
-        quantity: "dead load in place of the stroke, N (27)",
+        quantity: "dead load instead of the stroke, N (27)",
         values: &[1e-9, 1e-3, 1.0, 10.0, 27.0, 40.0, 100.0, 1e3, 9e4],
         change: |scene, load| {
             scene.drive = None;
