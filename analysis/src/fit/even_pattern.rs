@@ -37,6 +37,11 @@ impl Opening {
         cos + (1.0 - 2.0 * self.set_back) * sin
     }
 
+    /// The square whose place has a point.
+    pub(super) fn square_at(self, at: [f64; 2]) -> GridIndex {
+        at.map(|x| (x / self.pitch()).floor() as i32)
+    }
+
     /// A part of the opening.
     pub(super) fn part(self, part: f64) -> Self {
         Self { angle: part * self.angle, ..self }
@@ -84,6 +89,11 @@ pub(super) fn pairs([i, j]: GridIndex) -> [HingedSquares; 4] {
         [[i, j], [i, j + 1]],
         [[i + 1, j], [i + 1, j + 1]],
     ]
+}
+
+/// Two squares next to each other in their order.
+pub(super) fn pair(one: GridIndex, other: GridIndex) -> HingedSquares {
+    [one.min(other), one.max(other)]
 }
 
 /// The squares next to one.

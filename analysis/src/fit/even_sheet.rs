@@ -114,8 +114,8 @@ impl EvenSheet {
         if value(&symmetric) + FOR_SYMMETRY >= value(&any) { symmetric } else { any }
     }
 
-    /// The sheet of these loops at a place of a drawing, less the square at a point of the opened
-    /// pattern, or with a square there and those that it needs to hang on.
+    /// The sheet of these loops at a place of a drawing, less the square at a point of it, or with
+    /// a square there and those that it needs to hang on.
     pub(super) fn toggled(
         drawing: &Region,
         place: Similarity,
@@ -123,9 +123,8 @@ impl EvenSheet {
         mut loops: BTreeSet<GridIndex>,
         at: [f64; 2],
     ) -> Result<Self, Fault> {
-        let drawing =
-            drawing.map(|at| point(place.of(complex(at)))).simplified(TOLERANCE, |_| false);
-        let [i, j] = at.map(|x| (x / limits.opening.pitch()).floor() as i32);
+        let drawing = drawing.map(|at| moved(place, at)).simplified(TOLERANCE, |_| false);
+        let [i, j] = limits.opening.square_at(moved(place, at));
         let around = [[i - 1, j - 1], [i, j - 1], [i - 1, j], [i, j]];
         let before = squares(&loops);
         if before.contains(&[i, j]) {
@@ -167,7 +166,7 @@ impl EvenSheet {
         let opening = self.limits.opening;
         let flat = points.iter().filter_map(|at| {
             let there = moved(self.place, *at);
-            let owner = owners.get(&there.map(|x| (x / opening.pitch()).floor() as i32))?;
+            let owner = owners.get(&opening.square_at(there))?;
             Some(point(opening.motion(*owner).back(complex(there))))
         });
         let flat: Ring = flat.collect();

@@ -96,7 +96,6 @@ pub fn toggled(scene: &Scene, at: Point) -> Result<FittedScene, Fault> {
     let voids = (1..m).flat_map(|i| (1..n).map(move |j| [i, j]));
     let kept = voids.filter(|[i, j]| topology.has_void(*i, *j));
     let loops = kept.map(|void| void.map(|i| i as i32 - 1)).collect();
-    let at = point(place.of(complex(at)));
     let sheet = EvenSheet::toggled(&scene.target.region(), place, limits, loops, at)?;
     fastened(scene, &sheet, side)
 }
@@ -273,8 +272,12 @@ fn fasten(
 
 /// The middle of all panels from the corner of the grid (sides of a panel).
 fn middle(topology: &Topology) -> c64 {
-    let centre = |place: &[usize; 2]| complex(place.map(|i| i as f64 + 0.5));
     topology.places.iter().map(centre).sum::<c64>() / topology.panel_count() as f64
+}
+
+/// The middle of the cell at a place from the corner of the grid (sides of a panel).
+fn centre(place: &[usize; 2]) -> c64 {
+    complex(place.map(|i| i as f64 + 0.5))
 }
 
 /// An even sheet in the coordinates of its scene: turned back, so that the drawing stands upright,
@@ -311,7 +314,7 @@ impl<'a> LaidSheet<'a> {
 
     /// The middle of the cell of a panel (sides of a panel).
     fn centre(&self, panel: usize) -> c64 {
-        self.first + complex(self.topology.places[panel].map(|i| i as f64 + 0.5))
+        self.first + centre(&self.topology.places[panel])
     }
 
     /// A point of the pattern in the sheet (mm).

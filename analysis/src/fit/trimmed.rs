@@ -6,7 +6,8 @@
 //! Lengths are in sides of a square.
 
 use super::even_pattern::{
-    GridIndex, HingedSquares, Opening, centre, corners, hinge, moved, neighbours, pairs, squares,
+    GridIndex, HingedSquares, Opening, centre, corners, hinge, moved, neighbours, pair, pairs,
+    squares,
 };
 use design::geometry::plane::{complex, point};
 use design::geometry::polygon::{distance, distance_to_outline, distance_to_polygon};
@@ -58,8 +59,7 @@ pub(super) fn loops(
     limits: &Limits,
     inside: &impl Fn([f64; 2]) -> bool,
 ) -> BTreeSet<GridIndex> {
-    let cells = |x: f64| (x / limits.opening.pitch()).floor() as i32;
-    let [from, to] = bounds.map(|corner| corner.map(cells));
+    let [from, to] = bounds.map(|corner| limits.opening.square_at(corner));
     let all = (from[1] - 1..=to[1]).flat_map(|j| (from[0] - 1..=to[0]).map(move |i| [i, j]));
     let counts = |pair: &HingedSquares| {
         let corner = hinge(*pair);
@@ -184,15 +184,12 @@ struct TrimmedEdge<'a> {
 
 impl<'a> TrimmedEdge<'a> {
     fn new(drawing: &Region, loops: &BTreeSet<GridIndex>, limits: &'a Limits) -> Self {
-        let squares = squares(loops);
-        let hinges: BTreeSet<HingedSquares> = loops.iter().flat_map(|at| pairs(*at)).collect();
-        let is_hinged = |cell: GridIndex, other: GridIndex| {
-            hinges.contains(&[cell.min(other), cell.max(other)])
-        };
+        let hinges = loops.iter().flat_map(|at| pairs(*at)).collect();
+        let edge = Self { limits, squares: squares(loops), hinges, drawing: BTreeMap::new() };
         let seen = |cell: &GridIndex| {
             let motion = limits.opening.motion(*cell);
             let at = moved(motion, centre(*cell));
-            let is_inside = neighbours(*cell).into_iter().all(|other| is_hinged(*cell, other))
+            let is_inside = edge.hinges_of(*cell).count() == 4
                 && drawing.contours().all(|edge| distance_to_outline(at, edge) > FRAC_1_SQRT_2);
             let around = || {
                 let there = drawing.map(|at| point(motion.back(complex(at))));
@@ -203,20 +200,19 @@ impl<'a> TrimmedEdge<'a> {
             };
             (!is_inside).then(|| (*cell, around()))
         };
-        Self { limits, drawing: squares.iter().filter_map(seen).collect(), hinges, squares }
+        Self { drawing: edge.squares.iter().filter_map(seen).collect(), ..edge }
     }
 
     /// The hinges of a square.
     fn hinges_of(&self, cell: GridIndex) -> impl Iterator<Item = &HingedSquares> {
-        let pairs = neighbours(cell).map(|other| [cell.min(other), cell.max(other)]);
+        let pairs = neighbours(cell).map(|other| pair(cell, other));
         pairs.into_iter().filter_map(|pair| self.hinges.get(&pair))
     }
 
     /// A square in the drawing, with the windows of its hinges, apart from neighbours with which it does not hang together.
     fn square(&self, cell: GridIndex) -> Region {
         let is_apart = |other: &GridIndex| {
-            let pair = [cell.min(*other), cell.max(*other)];
-            self.squares.contains(other) && !self.hinges.contains(&pair)
+            self.squares.contains(other) && !self.hinges.contains(&pair(cell, *other))
         };
         let strip = |other: GridIndex| {
             // Corners that are rounded in the scene come no nearer to the tip of a cut.
