@@ -7,10 +7,11 @@
 //! D_peak has the same form, with its own network and scale.
 
 use crate::features::{features, pull_back};
-use crate::mlp_kernels::{Passes, chunk_size};
+use crate::mlp_kernels::{Passes, chunk_size, filled};
 use crate::network::Network;
 use crate::reference_ligament;
 use hinge::{HingeDeformation, HingeDesign, HingeGradient, NetLigament};
+use std::iter::zip;
 
 /// Damage measures of one hinge and their gradients.
 #[derive(Clone, Copy, Debug, Default)]
@@ -41,13 +42,14 @@ pub(crate) fn evaluate(
     let mut damages = Vec::with_capacity(seen.len());
     Passes::lent(|passes| {
         for seen in seen.chunks(size) {
-            let xi: Vec<_> = seen.iter().map(|(_, g, eps)| features(g, eps)).collect();
+            let xi = filled(seen.iter().map(|(_, g, eps)| features(g, eps)));
             passes.forward(head, &xi, 0..0);
             let outputs = passes.outputs().flatten();
             let outputs: Vec<f64> = outputs.map(|&y| sharpness * y).collect();
             let value = |y: f64| scale / sharpness * softplus(y);
             if !with_gradient {
-                damages.extend(outputs.iter().map(|&y| (value(y), HingeGradient::default())));
+                let values = zip(seen, outputs).map(|(_, y)| (value(y), HingeGradient::default()));
+                damages.extend(values);
                 continue;
             }
             let slopes: Vec<f64> = outputs.iter().map(|&y| logistic(y)).collect();

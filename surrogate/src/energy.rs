@@ -9,15 +9,15 @@
 //! ```
 //!
 //! where lambda is the adjoint of a unit, seeded by r. chi(xi(0, g)) depends on the features of the
-//! design, so dW/dg = 2 W_s (J - J0)' r, and d2W/dxi dg is reduced by 2 W_s J' J0.
+//! design: in their columns J is replaced by J - J0.
 
 use crate::features::{DEFORMATION_FEATURES, FEATURES, HingeEnergy, Order, features, pull_back};
-use crate::mlp_kernels::{Passes, chunk_size, packed_index, packed_len};
+use crate::mlp_kernels::{Passes, chunk_size, filled};
 use crate::network::Network;
 use crate::reference_ligament;
 use faer::Mat;
 use hinge::{HingeDeformation, HingeDesign, HingeGradient, NetLigament};
-use std::iter::zip;
+use std::iter::{once, zip};
 
 use rayon::prelude::*;
 use std::cell::RefCell;
@@ -32,7 +32,7 @@ pub struct Prepared {
     designs: Vec<HingeDesign>,
     /// The maps to the hinges that the networks see.
     ligaments: Vec<NetLigament>,
-    /// chi(xi(0, g)), one row per hinge.
+    /// chi(xi(0, g)), one row for each of the [`filled`] hinges.
     origin: Mat<f64>,
     /// The derivatives of `origin` in the features of the design.
     origin_tangents: Vec<Mat<f64>>,
@@ -43,13 +43,11 @@ impl Prepared {
     pub(crate) fn new(chi: &Network, designs: &[HingeDesign], reference: f64) -> Self {
         let ligaments: Vec<_> =
             designs.iter().map(|design| NetLigament::new(design, reference)).collect();
-        let undeformed: Vec<_> = zip(&ligaments, designs)
-            .map(|(ligament, design)| {
-                features(&ligament.design(design), &HingeDeformation::default())
-            })
-            .collect();
-        let of_design = DEFORMATION_FEATURES..chi.features();
-        let zeros = || Mat::zeros(designs.len(), chi.outputs());
+        let undeformed = filled(zip(&ligaments, designs).map(|(ligament, design)| {
+            features(&ligament.design(design), &HingeDeformation::default())
+        }));
+        let of_design = DEFORMATION_FEATURES..FEATURES;
+        let zeros = || Mat::zeros(undeformed.len(), chi.outputs());
         let mut origin = zeros();
         let mut origin_tangents: Vec<_> = of_design.clone().map(|_| zeros()).collect();
         Passes::lent(|passes| {
@@ -59,9 +57,8 @@ impl Prepared {
                 passes.forward(chi, undeformed, of_design.clone());
                 let rows = chunk * size..chunk * size + n;
                 for (output, block) in passes.outputs().enumerate() {
-                    for (target, values) in std::iter::once(&mut origin)
-                        .chain(&mut origin_tangents)
-                        .zip(block.chunks_exact(n))
+                    for (target, values) in
+                        once(&mut origin).chain(&mut origin_tangents).zip(block.chunks_exact(n))
                     {
                         target.col_as_slice_mut(output)[rows.clone()].copy_from_slice(values);
                     }
@@ -90,17 +87,15 @@ pub(crate) fn evaluate(
         deformations.len(),
         "one deformation for each prepared hinge"
     );
-    let size = chunk_size(deformations.len(), order.tangents(chi.features()));
+    let size = chunk_size(deformations.len(), order.tangents());
     let of_chunk = |(chunk, deformations): (usize, &[HingeDeformation])| -> Vec<HingeEnergy> {
         let first = chunk * size;
         let chunk = first..first + deformations.len();
         let ligaments = &prepared.ligaments[chunk.clone()];
-        let seen: Vec<_> = zip(&prepared.designs[chunk], deformations)
-            .zip(ligaments)
-            .map(|((design, deformation), ligament)| {
-                reference_ligament::seen(ligament, design, deformation)
-            })
-            .collect();
+        let hinges = zip(&prepared.designs[chunk], deformations).zip(ligaments);
+        let seen = filled(hinges.map(|((design, deformation), ligament)| {
+            reference_ligament::seen(ligament, design, deformation)
+        }));
         KERNEL.with_borrow_mut(|kernel| {
             kernel.run(chi, prepared, first, &seen, order);
             let hinges = zip(ligaments, &seen).enumerate();
@@ -136,12 +131,10 @@ struct Kernel {
     r: Vec<f64>,
     /// |r|^2
     square: Vec<f64>,
-    /// Half of the Hessian of |r|^2 at fixed chi(xi(0, g)), packed.
+    /// Half of the Hessian of |r|^2: a run for each deformation feature and each feature.
     half_hessian: Vec<f64>,
-    /// J0' r, one run per design feature.
-    origin_gradient: Vec<f64>,
-    /// J_i' J0_p, one run for each deformation feature i and design feature p.
-    origin_mixed: Vec<f64>,
+    /// (J - J0)' r, one run per design feature.
+    by_design: Vec<f64>,
 }
 
 impl Kernel {
@@ -156,7 +149,7 @@ impl Kernel {
         let n = seen.len();
         let rows = first..first + n;
         self.n = n;
-        self.tangents = order.tangents(chi.features());
+        self.tangents = order.tangents();
         let xi: Vec<_> =
             seen.iter().map(|(design, deformation)| features(design, deformation)).collect();
         self.passes.forward(chi, &xi, 0..self.tangents);
@@ -165,37 +158,38 @@ impl Kernel {
         reset(&mut self.square, n);
         for (output, block) in self.passes.outputs().enumerate() {
             let origin = &prepared.origin.col_as_slice(output)[rows.clone()];
-            let first = self.r.len();
-            let r = block.iter().zip(origin).map(|(value, origin)| value - origin);
-            self.r.extend(r);
-            let r = &self.r[first..];
+            self.r.extend(zip(block, origin).map(|(value, origin)| value - origin));
+        }
+        for r in self.r.chunks_exact(n) {
             add_product(&mut self.square, r, r);
         }
         if order < Order::Forces {
             return;
         }
-        reset(&mut self.half_hessian, n * packed_len(self.tangents));
+        reset(&mut self.half_hessian, n * DEFORMATION_FEATURES * self.tangents);
         self.passes.reverse(chi, &self.r, &mut self.half_hessian);
-        self.passes.add_gauss_newton(&mut self.half_hessian);
         if order == Order::Design {
             self.move_origin(prepared, rows);
         }
+        self.passes.add_gauss_newton(&mut self.half_hessian);
     }
 
-    /// Computes the sums with J0, the derivative of chi(xi(0, g)) with respect to the design.
+    /// Subtracts J0, the derivative of chi(xi(0, g)) in the features of the design, from J.
     fn move_origin(&mut self, prepared: &Prepared, rows: Range<usize>) {
         let n = self.n;
-        reset(&mut self.origin_gradient, DESIGN * n);
-        reset(&mut self.origin_mixed, DEFORMATION_FEATURES * DESIGN * n);
-        for (p, by_feature) in prepared.origin_tangents.iter().enumerate() {
-            for (output, block) in self.passes.outputs().enumerate() {
-                let by_feature = &by_feature.col_as_slice(output)[rows.clone()];
-                let r = &self.r[n * output..][..n];
-                add_product(&mut self.origin_gradient[n * p..][..n], r, by_feature);
-                for i in 0..DEFORMATION_FEATURES {
-                    let sum = &mut self.origin_mixed[n * (DESIGN * i + p)..][..n];
-                    add_product(sum, &block[n * (1 + i)..][..n], by_feature);
+        reset(&mut self.by_design, DESIGN * n);
+        for (output, (block, r)) in
+            zip(self.passes.outputs_mut(), self.r.chunks_exact(n)).enumerate()
+        {
+            let tangents = block[n * (1 + DEFORMATION_FEATURES)..].chunks_exact_mut(n);
+            let sums = self.by_design.chunks_exact_mut(n);
+            for ((tangent, sum), origin) in zip(zip(tangents, sums), &prepared.origin_tangents) {
+                for (value, origin) in
+                    zip(&mut *tangent, &origin.col_as_slice(output)[rows.clone()])
+                {
+                    *value -= origin;
                 }
+                add_product(sum, r, tangent);
             }
         }
     }
@@ -218,8 +212,7 @@ impl Kernel {
         let mut gradient = self.passes.gradient(hinge).map(|value| twice * value);
         if order == Order::Design {
             for p in 0..DESIGN {
-                gradient[DEFORMATION_FEATURES + p] -=
-                    twice * self.origin_gradient[self.n * p + hinge];
+                gradient[DEFORMATION_FEATURES + p] = twice * self.by_design[self.n * p + hinge];
             }
         }
         let gradient = pull_back(gradient, design, deformation);
@@ -229,8 +222,7 @@ impl Kernel {
         }
         // Row i of the Hessian in the features is the gradient of dW/dxi_i.
         for (i, scale) in [design.w_lig, design.w_lig, 1.0].into_iter().enumerate() {
-            let row: [f64; FEATURES] =
-                std::array::from_fn(|j| twice * self.second(hinge, i, j, order));
+            let row: [f64; FEATURES] = std::array::from_fn(|j| twice * self.second(hinge, i, j));
             let row = pull_back(row, design, deformation).to_array();
             let row = HingeGradient::from(row.map(|value| value / scale));
             energy.tangent[i] = row.state;
@@ -249,15 +241,11 @@ impl Kernel {
     }
 
     /// Half of the second derivative of |r|^2 in the features i (of the deformation) and j.
-    fn second(&self, hinge: usize, i: usize, j: usize, order: Order) -> f64 {
+    fn second(&self, hinge: usize, i: usize, j: usize) -> f64 {
         if j >= self.tangents {
             return 0.0;
         }
-        let mut value = self.half_hessian[self.n * packed_index(i, j, self.tangents) + hinge];
-        if order == Order::Design && j >= DEFORMATION_FEATURES {
-            value -= self.origin_mixed[self.n * (DESIGN * i + j - DEFORMATION_FEATURES) + hinge];
-        }
-        value
+        self.half_hessian[self.n * (i.min(j) * self.tangents + i.max(j)) + hinge]
     }
 }
 
@@ -268,7 +256,7 @@ fn reset(buffer: &mut Vec<f64>, len: usize) {
 
 /// sum += left * right, element by element.
 fn add_product(sum: &mut [f64], left: &[f64], right: &[f64]) {
-    for ((sum, left), right) in sum.iter_mut().zip(left).zip(right) {
+    for ((sum, left), right) in zip(zip(sum, left), right) {
         *sum += left * right;
     }
 }

@@ -84,12 +84,12 @@ pub enum Order {
 }
 
 impl Order {
-    /// Number of features with second derivatives, of a network with `features` inputs.
-    pub(crate) fn tangents(self, features: usize) -> usize {
+    /// Number of features with second derivatives.
+    pub(crate) fn tangents(self) -> usize {
         match self {
             Self::Value | Self::Forces => 0,
             Self::Tangent => DEFORMATION_FEATURES,
-            Self::Design => features,
+            Self::Design => FEATURES,
         }
     }
 }

@@ -46,6 +46,7 @@ mod network;
 mod reference_ligament;
 mod springback;
 mod tanh;
+mod weight_panels;
 mod weights;
 
 pub use card::{

@@ -28,25 +28,37 @@
 //! sum over layers and units of  lambda sigma''(a) (da/dxi_i) (da/dxi_j)
 //! ```
 
-use crate::features::FEATURES;
-use crate::network::{DIFFERENCE, Network, PairedAffine, SUM};
-use crate::tanh::tanh;
-use faer::linalg::matmul::matmul;
-use faer::{Accum, Mat, MatMut, MatRef, Par};
+use crate::features::{DEFORMATION_FEATURES, FEATURES};
+use crate::network::{DIFFERENCE, Network, SUM};
+use crate::tanh::{fuses, tanh};
+use crate::weight_panels::WeightPanels;
 use pulp::{Simd, WithSimd};
+use std::array::from_fn;
 use std::cell::RefCell;
-use std::iter::zip;
+use std::iter::{repeat_n, zip};
+use std::mem::swap;
 use std::ops::Range;
 
-/// Approximate maximum number of rows of a block. It is large enough that the packing of the
-/// weights for each product costs little, and small enough that the block stays in cache.
-const ROWS: usize = 320;
+/// Approximate maximum number of rows of a block, which then stays in cache (measured).
+const ROWS: usize = 96;
 
-/// Number of hinges per chunk, for `hinges` hinges with `tangents` tangents. All chunks have the
-/// same size, which is a multiple of the vector length.
+/// Number of hinges that fill the vectors of any processor.
+const LANES: usize = 8;
+
+/// Number of hinges per chunk, for `hinges` hinges with `tangents` tangents. All chunks but the last
+/// have the same size, which fills whole tiles of three vectors.
 pub(crate) fn chunk_size(hinges: usize, tangents: usize) -> usize {
     let chunks = hinges.div_ceil(ROWS / (1 + tangents)).max(1);
-    hinges.div_ceil(chunks).next_multiple_of(8).max(8)
+    hinges.div_ceil(chunks).next_multiple_of(3 * LANES).max(3 * LANES)
+}
+
+/// The hinges, the last one repeated until all vectors are full.
+pub(crate) fn filled<T: Clone>(hinges: impl IntoIterator<Item = T>) -> Vec<T> {
+    let mut hinges = Vec::from_iter(hinges);
+    if let Some(last) = hinges.last().cloned() {
+        hinges.resize(hinges.len().next_multiple_of(LANES), last);
+    }
+    hinges
 }
 
 /// The buffers of the passes, reused from chunk to chunk.
@@ -56,7 +68,7 @@ pub(crate) struct Passes {
     n: usize,
     /// The features for which tangents are propagated forwards.
     tangents: Range<usize>,
-    /// The features (13), one column per feature.
+    /// The block of the features (13).
     inputs: Vec<f64>,
     /// A block for each hidden layer, with tanh(a) instead of a.
     hidden: Vec<Vec<f64>>,
@@ -68,8 +80,8 @@ pub(crate) struct Passes {
     adjoint: Vec<f64>,
     /// df/dh of the preceding layer.
     lambda: Vec<f64>,
-    /// The weight of each hinge in [`accumulate_products`].
-    weight: Vec<f64>,
+    /// The weights in [`add_products`].
+    weights: Vec<f64>,
     /// df/dxi, one column per feature.
     gradient: Vec<f64>,
 }
@@ -86,8 +98,8 @@ impl Passes {
         PASSES.with_borrow_mut(work)
     }
 
-    /// Computes the outputs and their derivatives in the features `tangents`, for a chunk of
-    /// hinges.
+    /// Computes the outputs and their derivatives in the features `tangents`, for a chunk of hinges
+    /// that is [`filled`].
     pub(crate) fn forward(
         &mut self,
         network: &Network,
@@ -99,88 +111,54 @@ impl Passes {
         self.inputs.clear();
         for k in 0..FEATURES {
             self.inputs.extend(features.iter().map(|xi| xi[k]));
+            for tangent in self.tangents.clone() {
+                self.inputs.extend(repeat_n(f64::from(tangent == k), self.n));
+            }
         }
-        let [first, following @ ..] = network.affine.as_slice() else {
-            unreachable!("a network has at least one layer");
-        };
-        self.hidden.resize_with(following.len(), Vec::new);
-        self.enter(first);
-        for (index, affine) in following.iter().enumerate() {
-            std::mem::swap(&mut self.output, &mut self.hidden[index]);
-            let rows = self.rows();
-            let block = &mut self.hidden[index];
+        let (rows, layers) = (self.rows(), &network.affine);
+        let last = layers.len() - 1;
+        self.hidden.resize_with(last, Vec::new);
+        multiply(&layers[0].forward, &self.inputs, rows, layers[0].outputs(), &mut self.output);
+        for (block, pair) in zip(&mut self.hidden, layers.windows(2)) {
+            swap(&mut self.output, block);
             self.activation.resize(block.len(), 0.0);
-            pulp::Arch::new().dispatch(Activate {
-                n: self.n,
-                rows,
-                bias: &network.affine[index].bias,
-                block,
-                activation: &mut self.activation,
-            });
-            multiply(affine, &self.activation, rows, &mut self.output);
+            let (n, bias, activation) = (self.n, &*pair[0].bias, &mut *self.activation);
+            pulp::Arch::new().dispatch(Activate { n, rows, bias, block, activation });
+            let (weights, units) = (&pair[1].forward, pair[1].outputs());
+            multiply(weights, &self.activation, rows, units, &mut self.output);
         }
-        let rows = self.rows();
-        let last = &network.affine[following.len()];
-        for (column, bias) in self.output.chunks_exact_mut(rows).zip(&last.bias) {
+        for (column, bias) in self.output.chunks_exact_mut(rows).zip(&layers[last].bias) {
             for value in &mut column[..self.n] {
                 *value += bias;
             }
         }
     }
 
-    /// Evaluates the first layer without its bias; its tangents are the columns of its weight.
-    fn enter(&mut self, first: &PairedAffine) {
-        let (n, rows) = (self.n, self.rows());
-        multiply(first, &self.inputs, n, &mut self.adjoint);
-        self.output.resize(rows * first.bias.len(), 0.0);
-        let of_features = first.weights.iter().zip(first.outputs());
-        let units = of_features.flat_map(|([weight, _], units)| {
-            (0..units).map(move |unit| weight.as_ref().map(|weight| weight.row(unit)))
-        });
-        let columns = self.output.chunks_exact_mut(rows).zip(self.adjoint.chunks_exact(n));
-        for ((column, values), by_feature) in columns.zip(units) {
-            let (into, tangents) = column.split_at_mut(n);
-            into.copy_from_slice(values);
-            for (k, tangent) in self.tangents.clone().zip(tangents.chunks_exact_mut(n)) {
-                tangent.fill(by_feature.map_or(0.0, |by_feature| by_feature[k]));
-            }
-        }
-    }
-
     /// Computes the gradient in the features of a function of the outputs, given its gradient
     /// `seed` in the outputs (one column per output). Adds the contribution of the network's
-    /// curvature to its Hessian to `curvature`, packed as in [`accumulate_products`].
+    /// curvature to its Hessian to `curvature`, in the order of [`AddProducts`].
     pub(crate) fn reverse(&mut self, network: &Network, seed: &[f64], curvature: &mut [f64]) {
         let (n, rows) = (self.n, self.rows());
-        self.weight.resize(n, 0.0);
         self.adjoint.clear();
         self.adjoint.extend_from_slice(seed);
         for (affine, block) in network.affine[1..].iter().zip(&self.hidden).rev() {
-            multiply_transposed(affine, &self.adjoint, n, &mut self.lambda);
-            pulp::Arch::new().dispatch(Deactivate {
-                rows,
-                block,
-                lambda: &mut self.lambda,
-                weight: &mut self.weight,
-                curvature,
-            });
-            std::mem::swap(&mut self.adjoint, &mut self.lambda);
+            multiply(&affine.backward, &self.adjoint, n, affine.inputs, &mut self.lambda);
+            self.weights.resize(self.lambda.len(), 0.0);
+            let (lambda, weights) = (&mut *self.lambda, &mut *self.weights);
+            pulp::Arch::new().dispatch(Deactivate { n, rows, block, lambda, weights });
+            add_products(n, self.tangents.len(), block, weights, curvature);
+            swap(&mut self.adjoint, &mut self.lambda);
         }
-        multiply_transposed(&network.affine[0], &self.adjoint, n, &mut self.gradient);
+        let first = &network.affine[0];
+        multiply(&first.backward, &self.adjoint, n, first.inputs, &mut self.gradient);
     }
 
-    /// Adds J'J to `packed`, where J is the derivative of the outputs in the features of the
-    /// tangents.
-    pub(crate) fn add_gauss_newton(&mut self, packed: &mut [f64]) {
-        let rows = self.rows();
-        self.weight.clear();
-        self.weight.resize(self.n, 1.0);
-        pulp::Arch::new().dispatch(GaussNewton {
-            rows,
-            block: &self.output,
-            ones: &self.weight,
-            packed,
-        });
+    /// Adds J'J to `products`, where J is the derivative of the outputs in the features of the
+    /// tangents; see [`AddProducts`].
+    pub(crate) fn add_gauss_newton(&mut self, products: &mut [f64]) {
+        self.weights.clear();
+        self.weights.resize(self.n, 1.0);
+        add_products(self.n, self.tangents.len(), &self.output, &self.weights, products);
     }
 
     /// Values and tangents of each output: n values, then n derivatives for each tangent.
@@ -188,9 +166,15 @@ impl Passes {
         self.output.chunks_exact(self.rows())
     }
 
+    /// [`Passes::outputs`], which the next Gauss-Newton products are of.
+    pub(crate) fn outputs_mut(&mut self) -> impl Iterator<Item = &mut [f64]> {
+        let rows = self.rows();
+        self.output.chunks_exact_mut(rows)
+    }
+
     /// The gradient that [`Passes::reverse`] computed for one hinge of the chunk.
     pub(crate) fn gradient(&self, hinge: usize) -> [f64; FEATURES] {
-        std::array::from_fn(|k| self.gradient[k * self.n + hinge])
+        from_fn(|k| self.gradient[k * self.n + hinge])
     }
 
     fn rows(&self) -> usize {
@@ -198,52 +182,24 @@ impl Passes {
     }
 }
 
-/// Multiplies `inputs` by the weights of a layer.
-fn multiply(affine: &PairedAffine, inputs: &[f64], rows: usize, product: &mut Vec<f64>) {
-    let weight = |to: usize, from: usize| affine.weights[to][from].as_ref().map(Mat::transpose);
-    multiply_pairs(weight, inputs, rows, affine.outputs(), product);
-}
-
-/// Multiplies `adjoint` by the transposed weights of a layer, which gives df/dh of the units of the
-/// preceding layer.
-fn multiply_transposed(
-    affine: &PairedAffine,
-    adjoint: &[f64],
-    rows: usize,
-    product: &mut Vec<f64>,
-) {
-    let weight = |to: usize, from: usize| affine.weights[from][to].as_ref().map(Mat::as_ref);
-    multiply_pairs(weight, adjoint, rows, affine.inputs, product);
-}
-
-/// Multiplies sums and differences by weights of shape (inputs, outputs).
-fn multiply_pairs<'a>(
-    weight: impl Fn(usize, usize) -> Option<MatRef<'a, f64>>,
+/// Multiplies sums and differences by weights, whose units are the sums and differences of `units`
+/// in the product.
+fn multiply(
+    weights: &[[Option<WeightPanels>; 2]; 2],
     inputs: &[f64],
     rows: usize,
-    outputs: [usize; 2],
+    units: [usize; 2],
     product: &mut Vec<f64>,
 ) {
-    product.resize(rows * (outputs[SUM] + outputs[DIFFERENCE]), 0.0);
-    let (sums, differences) = product.split_at_mut(rows * outputs[SUM]);
+    product.clear();
+    product.resize(rows * (units[SUM] + units[DIFFERENCE]), 0.0);
+    let (sums, differences) = product.split_at_mut(rows * units[SUM]);
     for (to, product) in [(SUM, sums), (DIFFERENCE, differences)] {
-        let mut accum = Accum::Replace;
         for from in [SUM, DIFFERENCE] {
-            let Some(weight) = weight(to, from) else { continue };
-            let len = rows * weight.nrows();
+            let Some(weights) = &weights[to][from] else { continue };
+            let len = rows * weights.inputs;
             let inputs = if from == SUM { &inputs[..len] } else { &inputs[inputs.len() - len..] };
-            matmul(
-                MatMut::from_column_major_slice_mut(product, rows, weight.ncols()),
-                accum,
-                MatRef::from_column_major_slice(inputs, rows, weight.nrows()),
-                weight,
-                1.0,
-                Par::Seq,
-            );
-            accum = Accum::Add;
-        }
-        if accum == Accum::Replace {
-            product.fill(0.0);
+            weights.multiply(inputs, rows, product);
         }
     }
 }
@@ -264,7 +220,7 @@ impl WithSimd for Activate<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
-        let n = self.n;
+        let (n, fused) = (self.n, fuses::<S>());
         let units = zip(pairs(self.block, self.rows), pairs(self.activation, self.rows));
         let (sums, differences) = self.bias.split_at(self.bias.len() / 2);
         for ((block, activation), (even_bias, odd_bias)) in zip(units, zip(sums, differences)) {
@@ -273,7 +229,7 @@ impl WithSimd for Activate<'_> {
                 activation.map(|column| column.split_at_mut(n));
             for i in 0..n {
                 let (even, odd) = (h[i] + even_bias, g[i] + odd_bias);
-                (h[i], g[i]) = (tanh(even + odd), tanh(even - odd));
+                (h[i], g[i]) = (tanh(even + odd, fused), tanh(even - odd, fused));
                 (sum[i], difference[i]) = (h[i] + g[i], h[i] - g[i]);
             }
             let tangents = zip(tangents.chunks_exact_mut(n), opposite.chunks_exact_mut(n));
@@ -297,14 +253,14 @@ fn pairs(block: &mut [f64], rows: usize) -> impl Iterator<Item = [&mut [f64]; 2]
 }
 
 /// Replaces the sums and differences in `lambda`, of which df/dh is made, by the sums and
-/// differences of df/da, with sigma' = 1 - h^2 and sigma'' = -2 h sigma', and adds lambda sigma''
-/// T_i T_j to `curvature`; `weight` is a buffer for lambda sigma'' of one unit.
+/// differences of df/da, with sigma' = 1 - h^2 and sigma'' = -2 h sigma', and writes lambda sigma''
+/// to `weights`.
 struct Deactivate<'a> {
+    n: usize,
     rows: usize,
     block: &'a [f64],
     lambda: &'a mut [f64],
-    weight: &'a mut [f64],
-    curvature: &'a mut [f64],
+    weights: &'a mut [f64],
 }
 
 impl WithSimd for Deactivate<'_> {
@@ -312,22 +268,23 @@ impl WithSimd for Deactivate<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
-        let n = self.weight.len();
+        let n = self.n;
         let (firsts, seconds) = self.block.split_at(self.block.len() / 2);
         let columns = zip(firsts.chunks_exact(self.rows), seconds.chunks_exact(self.rows));
-        for ([sum, difference], columns) in zip(pairs(self.lambda, n), columns) {
-            let [(h, tangents), (g, opposite)] =
-                <[_; 2]>::from(columns).map(|column| column.split_at(n));
+        let weights = pairs(self.weights, n);
+        for ([sum, difference], ((h, g), [of_h, of_g])) in
+            zip(pairs(self.lambda, n), zip(columns, weights))
+        {
+            // Loops over few slices, which the compiler vectorises.
             for i in 0..n {
                 let (even, odd) = (sum[i], difference[i]);
                 sum[i] = (1.0 - h[i] * h[i]) * (even + odd);
                 difference[i] = (1.0 - g[i] * g[i]) * (even - odd);
             }
-            for (h, lambda, tangents) in [(h, &*sum, tangents), (g, &*difference, opposite)] {
+            for (weights, h, lambda) in [(of_h, h, &*sum), (of_g, g, &*difference)] {
                 for i in 0..n {
-                    self.weight[i] = -2.0 * h[i] * lambda[i];
+                    weights[i] = -2.0 * h[i] * lambda[i];
                 }
-                accumulate_products(self.weight, tangents, self.curvature);
             }
             for i in 0..n {
                 (sum[i], difference[i]) = (sum[i] + difference[i], sum[i] - difference[i]);
@@ -336,49 +293,53 @@ impl WithSimd for Deactivate<'_> {
     }
 }
 
-/// See [`Passes::add_gauss_newton`].
-struct GaussNewton<'a> {
-    rows: usize,
+/// Adds weight T_i T_j to `products` for the `T` tangents of the units in `block`. The weights are
+/// one run for each unit, or one for all.
+///
+/// `products` contains one run of n values for each i of a deformation feature and each j; runs of
+/// j < i are left out.
+struct AddProducts<'a, const T: usize> {
+    n: usize,
     block: &'a [f64],
-    ones: &'a [f64],
-    packed: &'a mut [f64],
+    weights: &'a [f64],
+    products: &'a mut [f64],
 }
 
-impl WithSimd for GaussNewton<'_> {
+impl<const T: usize> WithSimd for AddProducts<'_, T> {
     type Output = ();
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) {
-        for column in self.block.chunks_exact(self.rows) {
-            accumulate_products(self.ones, &column[self.ones.len()..], self.packed);
-        }
-    }
-}
-
-/// Adds weight T_i T_j to `packed` for every pair i <= j of the row blocks of `tangents`.
-///
-/// `packed` contains one run of n values for each pair, in the order (0, 0), (0, 1), ..., (1, 1),
-/// ...; see [`packed_index`].
-#[inline(always)]
-fn accumulate_products(weight: &[f64], tangents: &[f64], packed: &mut [f64]) {
-    let n = weight.len();
-    let mut runs = packed.chunks_exact_mut(n);
-    for (i, left) in tangents.chunks_exact(n).enumerate() {
-        for (right, run) in tangents.chunks_exact(n).skip(i).zip(&mut runs) {
-            for (((run, weight), left), right) in run.iter_mut().zip(weight).zip(left).zip(right) {
-                *run += weight * left * right;
+    fn with_simd<S: Simd>(self, simd: S) {
+        let n = self.n;
+        for hinge in (0..n).step_by(S::F64_LANES) {
+            let run = |values: &[f64], k: usize| S::as_simd_f64s(&values[k * n + hinge..]).0[0];
+            let mut sums = [[simd.splat_f64s(0.0); T]; DEFORMATION_FEATURES];
+            let weights = self.weights.chunks_exact(n).cycle();
+            for (column, weights) in zip(self.block.chunks_exact(n * (1 + T)), weights) {
+                let tangents: [_; T] = from_fn(|k| run(column, 1 + k));
+                for i in 0..DEFORMATION_FEATURES {
+                    let weighted = simd.mul_f64s(run(weights, 0), tangents[i]);
+                    for j in i..T {
+                        sums[i][j] = simd.mul_add_e_f64s(weighted, tangents[j], sums[i][j]);
+                    }
+                }
+            }
+            for (sum, run) in zip(sums.as_flattened(), self.products.chunks_exact_mut(n)) {
+                let run = &mut S::as_mut_simd_f64s(&mut run[hinge..]).0[0];
+                *run = simd.add_f64s(*run, *sum);
             }
         }
     }
 }
 
-/// Number of pairs i <= j < `tangents`.
-pub(crate) fn packed_len(tangents: usize) -> usize {
-    tangents * (tangents + 1) / 2
-}
-
-/// Position of the pair (i, j) in the order of [`accumulate_products`].
-pub(crate) fn packed_index(i: usize, j: usize, tangents: usize) -> usize {
-    let (i, j) = (i.min(j), i.max(j));
-    i * tangents - packed_len(i) + j
+/// See [`AddProducts`]; without tangents there are none.
+fn add_products(n: usize, tangents: usize, block: &[f64], weights: &[f64], products: &mut [f64]) {
+    let arch = pulp::Arch::new();
+    match tangents {
+        FEATURES => arch.dispatch(AddProducts::<FEATURES> { n, block, weights, products }),
+        DEFORMATION_FEATURES => {
+            arch.dispatch(AddProducts::<DEFORMATION_FEATURES> { n, block, weights, products });
+        }
+        _ => {}
+    }
 }

@@ -1,7 +1,9 @@
 //! A tanh network with a linear last layer, validated on construction.
 
 use crate::features::{FEATURES, Standardisation};
-use faer::Mat;
+use crate::weight_panels::WeightPanels;
+use faer::{Mat, MatRef};
+use std::array::from_fn;
 use std::f64::consts::FRAC_1_SQRT_2;
 use support::{Fault, Joined, fault, refuse};
 
@@ -36,16 +38,18 @@ pub struct Network {
 /// An affine map between the sums and differences of pairs of units: see [`crate::mlp_kernels`].
 #[derive(Clone, Debug)]
 pub(crate) struct PairedAffine {
-    /// Blocks by [`SUM`] and [`DIFFERENCE`] of outputs and inputs; `None` if zero. In a network with
+    /// Weights by [`SUM`] and [`DIFFERENCE`] of outputs and inputs; `None` if zero. In a network with
     /// mirror symmetry no sum depends on a difference, and no difference on a sum.
-    pub weights: [[Option<Mat<f64>>; 2]; 2],
+    pub forward: [[Option<WeightPanels>; 2]; 2],
+    /// The transposed weights, by sums and differences of inputs and outputs.
+    pub backward: [[Option<WeightPanels>; 2]; 2],
     /// Number of sums and of differences of the inputs; the features are sums.
     pub inputs: [usize; 2],
     /// The biases of the sums, then of the differences.
     pub bias: Vec<f64>,
 }
 
-/// Positions in [`PairedAffine::weights`].
+/// Positions in [`PairedAffine::forward`].
 pub(crate) const SUM: usize = 0;
 pub(crate) const DIFFERENCE: usize = 1;
 
@@ -83,11 +87,6 @@ impl Network {
         &self.layers
     }
 
-    /// Number of features that the network depends on.
-    pub(crate) fn features(&self) -> usize {
-        self.layers[0].weight.shape[1]
-    }
-
     pub(crate) fn outputs(&self) -> usize {
         self.affine[self.affine.len() - 1].bias.len()
     }
@@ -121,11 +120,14 @@ impl PairedAffine {
             pairs.map(|columns| columns.transpose().to_owned())
         };
         let weights = of_outputs(weight).map(of_inputs);
-        let is_zero = |block: &Mat<f64>| block.col_iter().all(|column| column.norm_max() == 0.0);
+        let panels = |weights: MatRef<f64>| {
+            let is_zero = weights.col_iter().all(|column| column.norm_max() == 0.0);
+            (!is_zero).then(|| WeightPanels::new(weights))
+        };
         Self {
             inputs: weights[SUM].each_ref().map(Mat::ncols),
-            weights: weights
-                .map(|blocks| blocks.map(|block| Some(block).filter(|it| !is_zero(it)))),
+            forward: from_fn(|to| from_fn(|from| panels(weights[to][from].transpose()))),
+            backward: from_fn(|to| from_fn(|from| panels(weights[from][to].as_ref()))),
             bias: of_outputs(bias).iter().flat_map(|part| part.col(0).iter().copied()).collect(),
         }
     }
