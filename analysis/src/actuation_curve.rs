@@ -15,7 +15,6 @@
 use crate::unit::Unit;
 use design::equilibrium::displacement_control::{magnitude, work};
 use design::equilibrium::load_step::LoadStep;
-use design::equilibrium::load_steps::LoadIncrement;
 use design::objective::design_problem::{Deployment, Mechanics};
 use design::sheet::cut_sheet::Sheet;
 use design::sheet::kinematics::Configuration;
@@ -62,33 +61,17 @@ impl ActuationCurve {
         Self::through(mechanics, &deployment.sheet, &before, states)
     }
 
-    /// The curve through the load steps and the increments of the path, and through states close
-    /// together about the maximum of the load and where the load of the end is first reached. The
-    /// path is followed twice more.
+    /// The curve through the load steps and states close together. The path is followed once more.
     pub fn resolved(mechanics: &Mechanics, sheet: &Sheet) -> Option<Self> {
         let law = mechanics.law.prepare(&sheet.designs());
         let hinged = mechanics.hinged(sheet, &*law, false);
         let solver = &mechanics.solver;
-        let before = solver.before_loads(hinged);
-        let increments = solver.increments(hinged);
-        let states = increments.iter().map(|end| (end.load_factor, &*end.configuration));
-        let coarse = Self::through(mechanics, sheet, &before, states)?.forwards();
-        let (top, reached) = (highest(&coarse), first_reached(&coarse));
-        let mut factors = Vec::new();
-        let mut from = 0.0;
-        for (i, LoadIncrement { at: to, .. }) in increments.into_iter().enumerate() {
-            let fine = i + 1 == top || i == top || Some(i) == reached;
-            let parts = if fine { FINE_STEPS } else { 1 };
-            factors
-                .extend((1..parts).map(|k| from + (to - from) * f64::from(k) / f64::from(parts)));
-            factors.push(to);
-            from = to;
-        }
-        // The load steps may go on where the path cannot be followed.
-        factors.extend(solver.load_parameters());
+        let parts = (1..=PARTS).map(|part| f64::from(part) / f64::from(PARTS));
+        let mut factors: Vec<f64> = parts.chain(solver.load_parameters()).collect();
         factors.sort_by(f64::total_cmp);
         factors.dedup();
         let steps = solver.load_steps_at(hinged, &factors);
+        let before = solver.before_loads(hinged);
         Self::through(mechanics, sheet, &before, steps.iter().map(load_and_state))
     }
 
@@ -224,8 +207,8 @@ pub struct LimitPoint {
 /// Difference, over the largest load, below which two loads count as equal.
 const SAME_LOAD: f64 = 1e-3;
 
-/// Number of parts into which an interval between two increments is divided.
-const FINE_STEPS: u32 = 16;
+/// Number of parts of a resolved path.
+const PARTS: u32 = 200;
 
 /// The index of the point of maximum load.
 fn highest(points: &[[f64; 2]]) -> usize {

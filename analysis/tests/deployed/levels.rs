@@ -78,7 +78,7 @@ fn a_level_goes_on_with_the_optimiser_of_the_one_before() {
     let evaluation = standard.evaluate(start).unwrap();
     let after = SearchState::after(&coarse, &standard, start.clone(), &evaluation);
     let [after, fresh] =
-        [after, new(&standard, start)].map(|search| searched(&standard, search, 5.into()));
+        [after, new(&standard, start)].map(|search| searched(&standard, search, 25.into()));
     let fall = |search: &SearchState| search.history[0].scores.loss - search.last().scores.loss;
     assert!(fall(&after) > 1.5 * fall(&fresh), "{} {}", fall(&after), fall(&fresh));
 }

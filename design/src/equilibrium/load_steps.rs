@@ -21,18 +21,6 @@ use crate::{
 };
 use support::vectors;
 
-/// The end of an increment of a path.
-#[derive(Clone, Debug)]
-pub struct LoadIncrement {
-    /// Load parameter: the fraction of the loads or, if they are prescribed, of the stroke and the
-    /// support motions.
-    pub at: f64,
-    /// zeta
-    pub load_factor: f64,
-    /// q: the motion of every panel.
-    pub configuration: Configuration,
-}
-
 impl EquilibriumSolver {
     /// Follows the equilibrium path from the flat sheet: first the load steps of the weight, then
     /// the load steps of the loads. The path ends early if no equilibrium is found.
@@ -180,23 +168,6 @@ impl EquilibriumSolver {
         path
     }
 
-    /// The ends of the increments of the path from the sheet before the loads, which are close
-    /// together where it bends.
-    ///
-    /// # Panics
-    /// If the grids of sheet and solver differ.
-    pub fn increments(&self, sheet: HingedSheet) -> Vec<LoadIncrement> {
-        let (_, start) = self.before_loads(sheet);
-        let follower = self.follower(sheet, PathStage::Actuation, start);
-        let ends = follower.into_iter().flat_map(|mut follower| {
-            std::iter::from_fn(move || {
-                let goes_on = follower.last.position.at < 1.0 && follower.advance().is_ok();
-                goes_on.then(|| follower.end_of_increment())
-            })
-        });
-        ends.collect()
-    }
-
     /// The beginning of the path from a start; `None` if the energy there is not finite.
     fn follower<'a>(
         &'a self,
@@ -236,23 +207,10 @@ impl Follower<'_> {
         }
     }
 
-    fn end_of_increment(&self) -> LoadIncrement {
-        let state = self.last_state(Order::Forces);
-        LoadIncrement {
-            at: self.last.position.at,
-            load_factor: state.load_factor,
-            configuration: state.configuration,
-        }
-    }
-
-    fn last_state(&self, order: Order) -> PotentialState {
-        let state = self.branch.state_at(&self.last.position, order);
-        state.expect("this state was computed before")
-    }
-
     /// The last point that was found, without a tangent: where the path ends.
     fn last_point(&mut self, jumps: usize) -> LoadStep {
-        let state = self.last_state(Order::Tangent);
+        let state = self.branch.state_at(&self.last.position, Order::Tangent);
+        let state = state.expect("this state was computed before");
         self.branch.reported(state, None, Status::Diverged, jumps)
     }
 

@@ -7,7 +7,7 @@ pub struct SolverSettings {
     /// larger one.
     pub tolerance: f64,
     /// Every how many steps of a design the path is followed from the flat sheet; the load steps of
-    /// the designs between are corrected from the load steps of the last followed path.
+    /// the designs between are corrected from the load steps of the design before.
     pub follow_every: usize,
     /// Maximum number of Newton iterations of a descent in energy, as after a jump. A descent ends
     /// before that where it reaches an equilibrium or makes no progress: the longest one known
@@ -22,7 +22,7 @@ const LOOSE_TOLERANCE: f64 = 1e-6;
 
 impl Default for SolverSettings {
     fn default() -> Self {
-        Self { tolerance: 1e-10, follow_every: 10, max_iterations: 10_000, max_increments: 100_000 }
+        Self { tolerance: 1e-10, follow_every: 30, max_iterations: 10_000, max_increments: 100_000 }
     }
 }
 

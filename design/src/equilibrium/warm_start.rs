@@ -9,9 +9,9 @@
 //! ```
 //!
 //! whose equilibrium in the new sheet requires no evaluation of the hinges. Newton's method then
-//! corrects it. The states are the states of a followed path as long as the path has no jump. A
-//! jump that appears between two load steps is not noticed: paths must be followed from the flat
-//! sheet now and then.
+//! corrects it, every load step by itself. The states are the states of a followed path as long as
+//! the path has no jump. A jump that appears between two load steps is not noticed: paths must be
+//! followed from the flat sheet now and then.
 
 use crate::{
     equilibrium::{
@@ -24,6 +24,7 @@ use crate::{
     hinge_law::{HingeEnergy, Order, PreparedLaw},
 };
 use hinge::{HingeDeformation, HingeDesign};
+use rayon::prelude::*;
 use std::array::from_fn;
 use std::iter::zip;
 use support::vectors::dot;
@@ -126,8 +127,14 @@ impl EquilibriumSolver {
             return None;
         }
         let changes = changes(sheet, designs);
-        let mut branch = Branch::new(self, sheet, stage);
-        zip(ends, known).map(|(at, known)| branch.load_step_near(*at, known, &changes)).collect()
+        let near = |(at, step): (&f64, &LoadStep), before: &[LoadStep]| {
+            let mut branch = Branch::new(self, sheet, stage);
+            let forces = before.iter().flat_map(|step| &step.hinges).map(|hinge| hinge.forces);
+            branch.force = branch.force.max(branch.largest(forces));
+            branch.load_step_near(*at, step, &changes)
+        };
+        let steps = ends.par_iter().zip(known).enumerate();
+        steps.map(|(before, step)| near(step, &known[..before])).collect()
     }
 }
 

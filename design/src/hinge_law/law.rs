@@ -59,7 +59,7 @@ pub trait HingeLaw: Send + Sync {
 }
 
 /// A hinge law for the hinges of one sheet. Each method takes one deformation per hinge.
-pub trait PreparedLaw {
+pub trait PreparedLaw: Sync {
     /// Energies with their derivatives up to `order`. Outside the range of a law the energy may be
     /// infinite; it is never NaN for finite deformations.
     fn energies(&self, deformations: &[HingeDeformation], order: Order) -> Vec<HingeEnergy>;

@@ -120,7 +120,7 @@ impl<S: Deref<Target = Surrogate>> PreparedSurrogate<S> {
     }
 }
 
-impl<S: Deref<Target = Surrogate>> PreparedLaw for PreparedSurrogate<S> {
+impl<S: Deref<Target = Surrogate> + Sync> PreparedLaw for PreparedSurrogate<S> {
     fn energies(&self, deformations: &[HingeDeformation], order: Order) -> Vec<HingeEnergy> {
         let (mapped, continuations) = self.mapped(deformations);
         let mut energies = self.surrogate.evaluate(&self.prepared, &mapped, order);

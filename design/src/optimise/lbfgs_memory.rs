@@ -6,7 +6,7 @@ use std::collections::VecDeque;
 use support::vectors::{add, dot};
 
 /// Maximum number of stored pairs of step and gradient change.
-const PAIRS: usize = 20;
+const PAIRS: usize = 80;
 
 /// The last steps, newest first.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]

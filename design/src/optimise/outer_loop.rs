@@ -1,11 +1,11 @@
 //! The outer loop, Algorithm 1: Adam or L-BFGS on theta = (z, ell, omega).
 //!
 //! Every few steps the path of the design is followed from the flat sheet; those between are
-//! corrected from that path. A corrected path can be on another branch than the followed one. The
-//! best design is therefore one whose path was followed: the best of the corrected ones, the
-//! candidate, is followed too, unless the next followed design is better. If its loss is another
-//! one, the steps since the followed path before it are discarded; the search continues from the
-//! best followed design, as from a new start, and follows every path.
+//! corrected, each from the one before. A corrected path can be on another branch than the followed
+//! one. The best design is therefore one whose path was followed: the best of the corrected ones,
+//! the candidate, is followed too, unless the next followed design is better. If its loss is
+//! another one, the steps since the followed path before it are discarded; the search continues
+//! from the best followed design, as from a new start, and follows every path.
 //!
 //! If the sheet of a design has no equilibrium, the step from the last design that had one is
 //! halved until an equilibrium exists. Steps depend only on the problem and the search state, so a
@@ -86,10 +86,11 @@ pub struct SearchState {
     /// Whether the candidate of the present pause has another loss.
     #[serde(skip)]
     candidate_mismatch: bool,
-    /// The last design whose path was followed from the flat sheet.
-    #[serde(rename = "anchor")]
-    last_followed: Option<DesignVector>,
-    /// The path of that design, if it is needed.
+    /// The last design whose path was followed from the flat sheet and those since, whose paths
+    /// were corrected each from the one before.
+    #[serde(default)]
+    since_followed: Vec<DesignVector>,
+    /// The path of the last of them, if it is needed.
     #[serde(skip)]
     known: Option<WarmStart>,
     /// One record per step, beginning with the record of the start.
@@ -113,8 +114,8 @@ const SAME_BRANCH: f64 = 1e-6;
 pub struct Until {
     /// Steps after the start, at most.
     pub steps: usize,
-    /// Whether it also ends when it has converged: when ten steps lower the loss by less than a
-    /// thousandth of it.
+    /// Whether it also ends when it has converged: when 25 steps lower the loss by less than
+    /// 0.25 % of it.
     pub converged: bool,
 }
 
@@ -125,7 +126,7 @@ impl From<usize> for Until {
 }
 
 /// Steps, and the relative fall of the loss over them, of a search that has converged.
-const CONVERGED: (usize, f64) = (10, 1e-3);
+const CONVERGED: (usize, f64) = (25, 2.5e-3);
 
 /// Continues the search from `state` until it has made all steps or has converged, until no step
 /// lowers the loss, or until the end of the step during which `stop` becomes true.
@@ -204,7 +205,7 @@ impl SearchState {
             branch_mismatch: false,
             candidate_mismatch: false,
             design: start.clone(),
-            last_followed: None,
+            since_followed: Vec::new(),
             known: None,
             history: Vec::new(),
         };
@@ -271,19 +272,17 @@ impl SearchState {
         }
     }
 
-    /// Computes the path of the last followed design after a pause of the search; forgets it if the
-    /// next path must be followed.
+    /// Computes the path of the last design after a pause of the search as it was found; forgets it
+    /// if the next path must be followed.
     fn know_a_path(&mut self, problem: &DesignProblem) {
-        let recent = self.history.iter().rev().take(self.follow_every(problem) - 1);
-        match &self.last_followed {
-            Some(last) if recent.clone().any(|record| record.followed) => {
-                if self.known.is_none()
-                    && let Ok(evaluation) = problem.evaluate(last)
-                {
-                    self.known = Some(evaluation.deployment.warm_start());
-                }
+        if self.since_followed.len() >= self.follow_every(problem) {
+            (self.since_followed, self.known) = Default::default();
+        }
+        if self.known.is_none() {
+            for design in &self.since_followed {
+                let found = problem.evaluate_near(design, self.known.as_ref()).ok();
+                self.known = found.map(|evaluation| evaluation.deployment.warm_start());
             }
-            _ => self.known = None,
         }
     }
 
@@ -332,7 +331,7 @@ impl SearchState {
         let before = self.history[..step].iter().rposition(|record| record.followed);
         self.history.truncate(before.map_or(1, |last| last + 1));
         self.branch_mismatch = true;
-        (self.last_followed, self.known) = (None, None);
+        (self.since_followed, self.known) = Default::default();
         self.search = self.search.restarted();
         self.go_on(self.best_followed.design.clone(), &evaluation);
         Ok(())
@@ -359,9 +358,11 @@ impl SearchState {
             _ => {}
         }
         if followed {
-            self.last_followed = Some(design.clone());
-            self.known =
-                (self.follow_every(problem) > 1).then(|| evaluation.deployment.warm_start());
+            self.since_followed.clear();
+        }
+        if self.follow_every(problem) > 1 {
+            self.since_followed.push(design.clone());
+            self.known = Some(evaluation.deployment.warm_start());
         }
         self.go_on(design, evaluation);
         self.history.push(StepRecord {

@@ -45,7 +45,7 @@ pub fn attachment_list(cuts: &CutLines, mounting: Option<&Mounting>) -> String {
 pub fn cut_summary(cuts: &CutLines, totals: &Totals) -> String {
     let mut text = format!(
         "quantity,value,unit\nkerf,{},mm\nslit width,{},mm\nover-run,{},mm\nslits,{},\nholes,{},\npierces,{},\ncut length,{:.3},m\n\
-         idle travel,{:.3},m\nidle travel in the order of the pattern,{:.3},m\n",
+         idle travel,{:.3},m\n",
         cuts.kerf(),
         cuts.slit_width,
         cuts.cutting.over_run,
@@ -53,8 +53,7 @@ pub fn cut_summary(cuts: &CutLines, totals: &Totals) -> String {
         totals.holes,
         totals.pierces,
         totals.cut_m,
-        totals.idle_m,
-        totals.idle_unordered_m
+        totals.idle_m
     );
     for (tenths, count) in holes_by_diameter(cuts.holes.iter().map(|hole| hole.radius)) {
         text += &format!("holes of diameter {:.1} mm,{count},\n", 0.1 * tenths as f64);

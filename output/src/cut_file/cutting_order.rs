@@ -1,8 +1,6 @@
 //! The order of cutting: holes before slits, the outline last, so that the sheet holds what is cut.
 //!
-//! Within a layer the tool moves on to the nearest cut, which it begins at the nearer end. The tour
-//! is then shortened by 2-opt: a run of cuts is cut backwards wherever this reduces the travel
-//! between the cuts.
+//! Within a layer the tool moves on to the nearest cut, which it begins at the nearer end.
 
 use crate::{
     cut_file::cut_drawing::{CutDrawing, Layer},
@@ -10,12 +8,6 @@ use crate::{
 };
 use design::geometry::polygon::distance;
 use support::{Extremes, Point};
-
-/// Maximum number of cuts in a run that is reversed: it bounds the time of a sweep over large
-/// sheets.
-const RUN: usize = 1000;
-/// Reduction of the travel that is not rounding (mm).
-const GAIN: f64 = 1e-6;
 
 impl CutDrawing {
     /// The shapes in cutting order, from a tool at `home`. The travel within a layer is at most the
@@ -85,8 +77,7 @@ type Leg = (usize, [Point; 2]);
 fn tour(shapes: &[Shape], from: Point) -> Vec<Shape> {
     let given: Vec<Leg> = shapes.iter().map(Shape::ends).enumerate().collect();
     let nearest = nearest_neighbours(&given, from);
-    let mut tour = if travel(&nearest, from) < travel(&given, from) { nearest } else { given };
-    two_opt(&mut tour, from);
+    let tour = if travel(&nearest, from) < travel(&given, from) { nearest } else { given };
     let legs = tour.into_iter();
     legs.map(|(i, ends)| shapes[i].along(ends)).collect()
 }
@@ -110,24 +101,4 @@ fn nearest_neighbours(legs: &[Leg], from: Point) -> Vec<Leg> {
         tour.push((i, ends));
     }
     tour
-}
-
-fn two_opt(tour: &mut [Leg], from: Point) {
-    let mut shorter = true;
-    while std::mem::take(&mut shorter) {
-        for i in 0..tour.len() {
-            let before = i.checked_sub(1).map_or(from, |last| tour[last].1[1]);
-            for j in i..usize::min(i + RUN, tour.len()) {
-                let next = tour.get(j + 1).map(|leg| leg.1[0]);
-                let onwards = |end| next.map_or(0.0, |next| distance(end, next));
-                let ([begin, _], [_, end]) = (tour[i].1, tour[j].1);
-                let now = distance(before, begin) + onwards(end);
-                if distance(before, end) + onwards(begin) < now - GAIN {
-                    tour[i..=j].reverse();
-                    tour[i..=j].iter_mut().for_each(|leg| leg.1.reverse());
-                    shorter = true;
-                }
-            }
-        }
-    }
 }

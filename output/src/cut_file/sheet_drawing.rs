@@ -34,10 +34,9 @@ pub struct SheetDrawing {
 impl SheetDrawing {
     /// The drawing of the cuts of `sheet`, cut from `material`.
     pub fn new(cuts: &CutLines, sheet: &Sheet, material: &SheetMaterial) -> Self {
-        let unordered = cuts.drawing();
         let home = cuts.tool_outlines()[0][0];
-        let mut numbered = unordered.in_cutting_order(home);
-        let totals = Totals::new(&numbered, &unordered, home);
+        let mut numbered = cuts.drawing().in_cutting_order(home);
+        let totals = Totals::new(&numbered, home);
         let (panels, hinges) = numbers(cuts, sheet);
         for text in panels.into_iter().chain(hinges) {
             numbered.add(Layer::Annotation, Shape::Text(text));

@@ -20,21 +20,17 @@ pub struct Totals {
     pub cut_m: f64,
     /// Length of the moves between the cuts, from the lower left corner of the sheet (m).
     pub idle_m: f64,
-    /// The same in the order of the pattern (m).
-    pub idle_unordered_m: f64,
 }
 
 impl Totals {
-    /// The totals of a drawing from a tool at `home`; `unordered` is the drawing in the order of
-    /// the pattern.
-    pub fn new(ordered: &CutDrawing, unordered: &CutDrawing, home: [f64; 2]) -> Self {
+    /// The totals of a drawing from a tool at `home`.
+    pub fn new(ordered: &CutDrawing, home: [f64; 2]) -> Self {
         Self {
             pierces: ordered.cuts().count(),
             holes: ordered.on(Layer::Holes).count(),
             slits: ordered.on(Layer::Cut).count(),
             cut_m: 1e-3 * ordered.cuts().map(Shape::length).sum::<f64>(),
             idle_m: 1e-3 * ordered.idle_travel(home),
-            idle_unordered_m: 1e-3 * unordered.idle_travel(home),
         }
     }
 }
@@ -43,9 +39,8 @@ impl fmt::Display for Totals {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         write!(
             f,
-            "{} holes, {} slits, {} pierces; {:.2} m of cuts, {:.2} m of idle travel ({:.2} m in the order of the \
-             pattern)",
-            self.holes, self.slits, self.pierces, self.cut_m, self.idle_m, self.idle_unordered_m
+            "{} holes, {} slits, {} pierces; {:.2} m of cuts, {:.2} m of idle travel",
+            self.holes, self.slits, self.pierces, self.cut_m, self.idle_m
         )
     }
 }

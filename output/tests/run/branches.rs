@@ -26,7 +26,7 @@ fn least_loss(designed: &Designed) -> f64 {
 /// Between two followed paths, the paths of these searches go on along another branch.
 #[test]
 fn a_search_keeps_a_design_whose_path_was_followed() {
-    for start in [("adam", 0.5, 6), ("adam", 0.5, 18), ("lbfgs", 0.7, 7)] {
+    for start in [("adam", 0.5, 6), ("adam", 0.5, 18), ("lbfgs", 0.7, 4)] {
         let folder = tempfile::tempdir().unwrap();
         let scene = circle(folder.path(), start);
         let designed = run(&scene, None).unwrap();
@@ -67,7 +67,7 @@ fn every_path_is_followed_after_a_contradiction() {
 /// A pause has no effect on a search, not even between a false design and its discovery.
 #[test]
 fn a_stopped_search_that_is_refuted_resumes_to_the_same_trajectory() {
-    for start in [("adam", 0.5, 6), ("lbfgs", 0.7, 7)] {
+    for start in [("adam", 0.5, 6), ("lbfgs", 0.7, 4)] {
         let whole = tempfile::tempdir().unwrap();
         let uninterrupted = run(&circle(whole.path(), start), None).unwrap();
         for stop in [3, 7] {

@@ -122,7 +122,7 @@ fn searched(
 fn a_search_through_jumps_does_not_end_above_its_start() {
     for name in named("corrected-path-linear") {
         let steps = if name.contains("lbfgs") { 150 } else { 40 };
-        let (scene, problem) = drawn(&name, |_| {});
+        let (scene, problem) = drawn(&name, |config| config.solver.follow_every = 10);
         let found = searched((&scene, &problem), steps, &mut |_| {});
         let [start, best] = [&scene.start(), &found.best].map(|of| problem.loss(of).unwrap());
         assert!(best <= start, "{name}: {best} from {start}");

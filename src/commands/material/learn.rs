@@ -86,10 +86,6 @@ pub(crate) struct LearnCommand {
     /// Number of rays of the spot check, each with 4 states; an accuracy is stated from 6 rays on
     #[arg(long, value_name = "N", default_value_t = 16, value_parser = clap::value_parser!(u16).range(3..))]
     spot_rays: u16,
-    /// Seed of the states of the spot check. Errors that led to a choice are measured again with
-    /// another seed
-    #[arg(long, value_name = "SEED", default_value_t = 1)]
-    spot_seed: u64,
     #[command(flatten)]
     solve: SolveArgs,
     /// Folder for the results; a folder of a stopped run is continued. Its weights come from the
@@ -105,6 +101,8 @@ const PLATE_PARENTS: &str = "data/polypropylene-3mm";
 const PARENTS: [&str; 4] = ["medium", "medium-1", "medium-2", "medium-3"];
 /// States on a ray of the spot check.
 const STATES_PER_RAY: usize = 4;
+/// Seed of these states.
+const SPOT_SEED: u64 = 1;
 /// The shipped training, and its copy in the folder. `kirigami init` writes another training to the
 /// same folder.
 const TRAINING_FILE: &str = "fine-tuning.toml";
@@ -260,7 +258,7 @@ impl LearnCommand {
     /// The states on which weights are tested, drawn uniformly inside the region of the campaign.
     fn spot_check(&self, campaign: &Campaign, region: &TrainingDomain) -> Result<Database> {
         let count = STATES_PER_RAY * usize::from(self.spot_rays);
-        let paths = random_paths(campaign.drawn(region), count, STATES_PER_RAY, self.spot_seed);
+        let paths = random_paths(campaign.drawn(region), count, STATES_PER_RAY, SPOT_SEED);
         let mut windows = self.solve.service(&self.out.join("spot-check"))?;
         windows.limit = campaign.time_limit;
         let check = spot_check(&windows, &paths, &campaign.material, campaign.tier);
