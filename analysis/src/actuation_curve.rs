@@ -16,9 +16,8 @@ use crate::unit::Unit;
 use design::equilibrium::displacement_control::{magnitude, work};
 use design::equilibrium::load_step::LoadStep;
 use design::objective::design_problem::{Deployment, Mechanics};
-use design::sheet::cut_sheet::Sheet;
-use design::sheet::kinematics::Configuration;
 use serde::Serialize;
+use std::iter::{once, zip};
 
 /// What moves the sheet.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -51,54 +50,51 @@ impl ActuationCurve {
     /// The curve through the load steps of a deployment by `mechanics`; `None` if nothing moves the
     /// sheet.
     pub fn new(mechanics: &Mechanics, deployment: &Deployment) -> Option<Self> {
-        let weighed = deployment.weight_steps();
-        let loaded = &deployment.path[weighed.len()..];
-        let before = weighed.last().map_or_else(
-            || (0.0, mechanics.solver.flat()),
-            |last| (last.load_factor, last.configuration.clone()),
-        );
-        let states = loaded.iter().map(load_and_state);
-        Self::through(mechanics, &deployment.sheet, &before, states)
+        Self::through(mechanics, deployment, loaded(deployment))
     }
 
-    /// The curve through the load steps and states close together. The path is followed once more.
-    pub fn resolved(mechanics: &Mechanics, sheet: &Sheet) -> Option<Self> {
-        let law = mechanics.law.prepare(&sheet.designs());
-        let hinged = mechanics.hinged(sheet, &*law, false);
+    /// The curve through the load steps and states between them, for which the path is followed once
+    /// more.
+    pub fn resolved(mechanics: &Mechanics, deployment: &Deployment) -> Option<Self> {
+        let law = mechanics.law.prepare(&deployment.sheet.designs());
+        let hinged = mechanics.hinged(&deployment.sheet, &*law, false);
         let solver = &mechanics.solver;
-        let parts = (1..=PARTS).map(|part| f64::from(part) / f64::from(PARTS));
-        let mut factors: Vec<f64> = parts.chain(solver.load_parameters()).collect();
-        factors.sort_by(f64::total_cmp);
-        factors.dedup();
-        let steps = solver.load_steps_at(hinged, &factors);
-        let before = solver.before_loads(hinged);
-        Self::through(mechanics, sheet, &before, steps.iter().map(load_and_state))
+        let parts = (1..PARTS).map(|part| f64::from(part) / f64::from(PARTS));
+        let is_new = |part: &f64| solver.load_parameters().all(|known| known != *part);
+        let between: Vec<f64> = parts.filter(is_new).collect();
+        let steps = solver.load_steps_at(hinged, &between);
+        let known = zip(solver.load_parameters(), loaded(deployment));
+        let mut states: Vec<_> = zip(between, &steps).chain(known).collect();
+        states.sort_by(|(one, _), (other, _)| one.total_cmp(other));
+        Self::through(mechanics, deployment, states.into_iter().map(|(_, step)| step))
     }
 
-    /// The curve through the load factors and configurations of states, beginning `before` the
-    /// loads; `None` if nothing moves the sheet.
+    /// The curve through load steps, beginning before the loads; `None` if nothing moves the sheet.
     fn through<'a>(
         mechanics: &Mechanics,
-        sheet: &Sheet,
-        (load_factor, start): &'a (f64, Configuration),
-        states: impl Iterator<Item = (f64, &'a [[f64; 3]])>,
+        deployment: &Deployment,
+        steps: impl IntoIterator<Item = &'a LoadStep>,
     ) -> Option<Self> {
-        let (mover, direction) = match magnitude(mechanics.solver.loads()) {
-            Some(_) => (Mover::Loads, mechanics.solver.loads().to_vec()),
-            None => (Mover::Supports, mechanics.solver.support_motions()),
+        let (solver, sheet) = (&mechanics.solver, &deployment.sheet);
+        let (mover, direction) = match magnitude(solver.loads()) {
+            Some(_) => (Mover::Loads, solver.loads().to_vec()),
+            None => (Mover::Supports, solver.support_motions()),
         };
         let (size, translational) = magnitude(&direction)?;
         let law = mechanics.law.prepare(&sheet.designs());
         let hinged = mechanics.hinged(sheet, &*law, false);
-        let point = |(zeta, configuration): (f64, &[[f64; 3]])| match mover {
+        let point = |zeta: f64, configuration: &[[f64; 3]]| match mover {
             Mover::Loads => [work(&direction, configuration) / size, zeta * size],
             Mover::Supports => {
-                let forces = mechanics.solver.holding_forces(hinged, 1.0, configuration);
+                let forces = solver.holding_forces(hinged, 1.0, configuration);
                 [zeta * size, work(&direction, &forces) / size]
             }
         };
-        let before = std::iter::once((*load_factor, &start[..]));
-        Some(Self { mover, translational, points: before.chain(states).map(point).collect() })
+        let of_step = |step: &LoadStep| point(step.load_factor, &step.configuration);
+        let start = deployment.weight_steps().last();
+        let start = start.map_or_else(|| point(0.0, &solver.flat()), of_step);
+        let points = once(start).chain(steps.into_iter().map(of_step)).collect();
+        Some(Self { mover, translational, points })
     }
 
     /// The maximum of the load, in the direction of the displacement.
@@ -237,8 +233,9 @@ fn vertex([x0, f0]: [f64; 2], [x1, f1]: [f64; 2], [x2, f2]: [f64; 2]) -> [f64; 2
     }
 }
 
-fn load_and_state(step: &LoadStep) -> (f64, &[[f64; 3]]) {
-    (step.load_factor, &step.configuration)
+/// The load steps of a deployment under loads.
+fn loaded(deployment: &Deployment) -> &[LoadStep] {
+    &deployment.path[deployment.weight_steps().len()..]
 }
 
 #[cfg(test)]

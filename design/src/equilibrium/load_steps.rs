@@ -47,12 +47,6 @@ impl EquilibriumSolver {
         self.read(sheet, PathStage::Weight, start, self.ends(PathStage::Weight))
     }
 
-    /// Load factor and configuration of the sheet before the loads: flat, or under its weight.
-    pub fn before_loads(&self, sheet: HingedSheet) -> (f64, Configuration) {
-        let weighed = self.weighed(sheet).pop();
-        weighed.map_or_else(|| (0.0, self.flat()), |last| (last.load_factor, last.configuration))
-    }
-
     /// Follows the equilibrium path from a start that is an equilibrium under the weight and the
     /// forces held constant.
     ///
@@ -83,7 +77,8 @@ impl EquilibriumSolver {
     /// # Panics
     /// If the grids of sheet and solver differ.
     pub fn load_steps_at(&self, sheet: HingedSheet, parameters: &[f64]) -> Vec<LoadStep> {
-        let (_, start) = self.before_loads(sheet);
+        let weighed = self.weighed(sheet).pop();
+        let start = weighed.map_or_else(|| self.flat(), |last| last.configuration);
         self.read(sheet, PathStage::Actuation, start, parameters.iter().copied())
     }
 

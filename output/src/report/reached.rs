@@ -41,18 +41,14 @@ impl Reached {
         let [displacement, load] = *curve.points.last()?;
         let stiffness = deployment.final_step().stiffness(&mechanics.solver);
         let resolved = (curve.is_prescribed(mechanics))
-            .then(|| ActuationCurve::resolved(mechanics, &deployment.sheet))
+            .then(|| ActuationCurve::resolved(mechanics, deployment))
             .flatten();
         Some(Self {
             stroke_of: stroke_of(scene, &curve),
             displacement,
             load,
             units: curve.units(),
-            // The load steps at the end of the two curves differ by rounding.
-            peak: resolved.as_ref().map(ActuationCurve::peak).map(|peak| match peak.load.abs() {
-                most if most < load.abs() => LoadPeak { displacement, load, ..peak },
-                _ => peak,
-            }),
+            peak: resolved.as_ref().map(ActuationCurve::peak),
             // The curve beyond a jump is another branch.
             limit_points: resolved
                 .filter(|_| deployment.path.iter().all(|step| step.jumps == 0))
