@@ -12,6 +12,9 @@ use support::{Extremes, Point};
 
 /// Angle of the pieces of an arc (rad).
 const ARC: f64 = 0.2;
+/// Distance of a corner from the line between its neighbours up to which it is straight, over the
+/// distance of an offset.
+const STRAIGHT: f64 = 1e-4;
 
 /// The corners of a closed polygon.
 pub type Ring = Vec<Point>;
@@ -69,12 +72,16 @@ impl Region {
     /// All points nearer than a distance, or, if it is negative, the points that are as far from
     /// the outside.
     pub fn offset(&self, distance: f64, corners: Corners) -> Self {
+        // The crate leaves a spike at a corner that is straight but for a rounding.
+        let bent = |contour: &Ring| simplified(contour, STRAIGHT * distance.abs(), |_| false);
+        let bent = |contours: &Vec<Ring>| contours.iter().map(bent).collect();
+        let bent: Vec<Vec<Ring>> = self.polygons.iter().map(bent).collect();
         let join = match corners {
             Corners::Round => LineJoin::Round(ARC),
             Corners::Sharp => LineJoin::Miter(FRAC_PI_8),
         };
         let style = OutlineStyle::new(distance).line_join(join);
-        Self { polygons: self.polygons.outline(&style) }
+        Self { polygons: bent.outline(&style) }
     }
 
     /// The same with its corners kept.
@@ -153,8 +160,7 @@ pub fn seen(panels: Vec<Ring>, drawing: &Region) -> f64 {
     closed.common(drawing).area() / closed.union(drawing).area()
 }
 
-/// What one sees of opened panels: without the gaps between them. Every panel grows by itself: of a
-/// union of panels that touch, a corner is lost now and then on the way back.
+/// What one sees of opened panels: without the gaps between them.
 pub fn as_seen(panels: Vec<Ring>, drawing: &Region) -> Region {
     const GAP: f64 = 0.04;
     // Squares that are turned by a right angle are half a side from the middle of their gap; panels
@@ -163,10 +169,8 @@ pub fn as_seen(panels: Vec<Ring>, drawing: &Region) -> Region {
     let area: f64 = panels.iter().map(|panel| polygon::area(panel)).sum();
     let panel = (area / panels.len() as f64).sqrt();
     let gap = f64::max(GAP * drawing.longer_side(), OF_PANEL * panel);
-    let grown = panels.into_iter().flat_map(|panel| {
-        Region { polygons: vec![vec![panel]] }.offset(gap, Corners::Round).polygons
-    });
-    Region::union_of(grown.flatten().collect()).offset(-gap, Corners::Round)
+    let opened = Region::union_of(panels);
+    opened.offset(gap, Corners::Round).offset(-gap, Corners::Round)
 }
 
 fn simplified(contour: &[Point], tolerance: f64, fixed: impl Fn(Point) -> bool) -> Ring {
@@ -250,7 +254,7 @@ mod tests {
         assert!((seen(panels(2), &drawing) - 19.6 / 29.6).abs() < 1e-3);
     }
 
-    /// The union of these panels, grown and shrunk again by 9.47 mm, is 104 mm^2 too small.
+    /// Corners that are straight but for a rounding left a spike here: 104 mm^2 were lost.
     #[test]
     fn no_corner_is_lost_where_gaps_are_closed() {
         let panels = vec![
