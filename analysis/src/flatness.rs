@@ -5,7 +5,6 @@
 //! the elasto-gravity length. Plates: [`out_of_plane`](crate::out_of_plane).
 
 use crate::calibration::CALIBRATION;
-use crate::localisation::elasto_gravity_length;
 use hinge::SheetMaterial;
 
 /// Whether the panels of a sheet stay in their plane.
@@ -37,7 +36,11 @@ impl Flatness {
 /// lies on a table, with windows of `r_win` (mm), whose hinges open by about 26 deg; `None` if its
 /// weight does not hold it down.
 pub fn error_on_table(material: &SheetMaterial, r_win: f64) -> Option<f64> {
-    let ratio = elasto_gravity_length(material) / r_win;
+    // The length at which the weight of a plate bends it as much as its stiffness resists:
+    // (E t^3 / (12 (1 - nu^2) rho g t))^(1/3).
+    let plate =
+        material.young * material.thickness.powi(3) / (12.0 * (1.0 - material.poisson.powi(2)));
+    let ratio = (plate / material.weight_by_area()).cbrt() / r_win;
     let [error, pressed] = CALIBRATION.table.value;
     (ratio <= pressed).then_some(error * ratio)
 }

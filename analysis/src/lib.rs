@@ -19,7 +19,6 @@ pub mod flatness;
 mod force_errors;
 pub mod level_difference;
 pub mod levels;
-pub mod localisation;
 pub mod material_check;
 pub mod measured_openings;
 pub mod measured_points;

@@ -1,5 +1,4 @@
-//! What a material means for the ligaments and panels of an intended sheet, before windows are
-//! solved.
+//! What a material means for the ligaments of an intended sheet, before windows are solved.
 //!
 //! Estimates for a ligament of width w in a sheet of thickness t (sections 4.2 and 5.1):
 //!
@@ -8,32 +7,19 @@
 //! | film: strain at which it buckles | (t / w)^2 / 2, at the rotation t / w |
 //! | film: rotation at which a fold as long as the ligament is wide yields at its surface | 2 w / t times the yield strain |
 //! | rotation at which the most strained 1 % tears, at the tip | fracture strain and yield strain over the strain at the tip |
-//! | critical panel edge, Gamma | (22), (21) |
 //!
 //! docs/MATERIALS.md has the windows that the strain at the tip comes from.
 
 use crate::calibration::CALIBRATION;
-use crate::localisation::{critical_edge, gamma};
 use hinge::{Regime, SheetMaterial};
 use serde::Serialize;
 use support::Extremes;
 use support::severity::{Finding, Severity};
 
-/// The intended use of a material.
-#[derive(Clone, Copy, Debug)]
-pub struct Intended {
-    /// Minimum and maximum ligament width (mm).
-    pub w_lig: [f64; 2],
-    /// Panel edge (mm) of a sheet that lies on a surface.
-    pub lying_pitch: Option<f64>,
-}
-
-impl Intended {
-    /// A sheet of the given thickness (mm) with the ligaments for which there are hinge data.
-    pub fn usual(thickness: f64, regime: Regime) -> Self {
-        let w_lig = CALIBRATION.of(regime).slenderness.value.map(|ratio| ratio * thickness);
-        Self { w_lig, lying_pitch: None }
-    }
+/// The minimum and maximum ligament width (mm) for which there are hinge data, in a sheet of the given
+/// thickness (mm).
+pub fn usual_widths(thickness: f64, regime: Regime) -> [f64; 2] {
+    CALIBRATION.of(regime).slenderness.value.map(|ratio| ratio * thickness)
 }
 
 /// Estimates for one ligament width.
@@ -49,10 +35,6 @@ pub struct LigamentEstimate {
     pub yields_at_deg: Option<f64>,
     /// The least and the largest rotation at which the tip tears, at most a half turn (deg).
     pub tears_at_deg: [f64; 2],
-    /// L* (mm).
-    pub critical_edge: f64,
-    /// Gamma at the intended panel edge.
-    pub gamma: Option<f64>,
 }
 
 /// All estimates and findings.
@@ -76,17 +58,15 @@ const HALF_TURN: f64 = 180.0;
 /// paper has up to 12.
 const STIFFEST_PLASTIC: f64 = 12.0;
 impl MaterialCheck {
-    /// Checks a valid material for an intended use with positive lengths.
-    pub fn new(material: &SheetMaterial, intended: &Intended) -> Self {
-        let [min, max] = intended.w_lig;
-        let estimate = |w_lig| LigamentEstimate::new(material, intended, w_lig);
+    /// Checks a valid material for positive ligament widths (mm), from a minimum to a maximum.
+    pub fn new(material: &SheetMaterial, [min, max]: [f64; 2]) -> Self {
+        let estimate = |w_lig| LigamentEstimate::new(material, w_lig);
         let mut ligaments = vec![estimate(min)];
         ligaments.extend((max > min).then(|| estimate(max)));
         let mut verdicts = law(material);
         verdicts.extend(stiffness(material));
         verdicts.extend(buckling(material, &ligaments[0]));
         verdicts.extend(slenderness(&ligaments));
-        verdicts.extend(panels(intended, &ligaments));
         verdicts.push(tearing(material, &ligaments[0]));
         verdicts.sort_by_key(|verdict| std::cmp::Reverse(verdict.severity));
         Self {
@@ -104,7 +84,7 @@ impl MaterialCheck {
 }
 
 impl LigamentEstimate {
-    fn new(material: &SheetMaterial, intended: &Intended, w_lig: f64) -> Self {
+    fn new(material: &SheetMaterial, w_lig: f64) -> Self {
         let slenderness = w_lig / material.thickness;
         let regime = Regime::of(slenderness);
         let of_film = |angle: f64| (regime == Regime::Film).then_some(angle.to_degrees());
@@ -117,8 +97,6 @@ impl LigamentEstimate {
             buckles_at_deg: of_film(slenderness.recip()),
             yields_at_deg: of_film(2.0 * slenderness * yield_strain(material)),
             tears_at_deg: [most, least].map(|angle| angle.to_degrees().min(HALF_TURN)),
-            critical_edge: critical_edge(material, w_lig),
-            gamma: (intended.lying_pitch).map(|edge| gamma(material, w_lig, edge)),
         }
     }
 
@@ -245,26 +223,6 @@ fn slenderness(ligaments: &[LigamentEstimate]) -> Option<Finding> {
     })
 }
 
-/// Gamma at the intended panel edge.
-fn panels(intended: &Intended, ligaments: &[LigamentEstimate]) -> Option<Finding> {
-    let pitch = intended.lying_pitch?;
-    let least = ligaments.iter().smallest_by(|ligament| ligament.gamma.unwrap_or(0.0))?;
-    let gamma = least.gamma?;
-    let at = format!(
-        "panels of {pitch:.1} mm with ligaments of {} mm have Gamma = {gamma:.3} (L* = {:.0} mm)",
-        least.w_lig, least.critical_edge
-    );
-    let (severity, weight) = if gamma < 1.0 {
-        let weak = "below 1 its weight does not hold the panels down";
-        (Severity::Warning, weak)
-    } else {
-        let enough = "its weight presses the panels down, which need not keep them flat";
-        (Severity::Note, enough)
-    };
-    let message = format!("{at}, for a sheet that lies on a surface: {weight}");
-    Some(severity.finding(message))
-}
-
 /// The strain at the tip against the fracture strain.
 fn tearing(material: &SheetMaterial, ligament: &LigamentEstimate) -> Finding {
     let regime = ligament.regime();
@@ -296,12 +254,12 @@ mod tests {
         SheetMaterial::load(&film).unwrap()
     }
 
-    const PAPER: Intended = Intended { w_lig: [18.0, 18.0], lying_pitch: Some(406.4) };
+    const PAPER: [f64; 2] = [18.0, 18.0];
 
-    fn check(change: impl Fn(&mut SheetMaterial), intended: Intended) -> MaterialCheck {
+    fn check(change: impl Fn(&mut SheetMaterial), w_lig: [f64; 2]) -> MaterialCheck {
         let mut material = film();
         change(&mut material);
-        MaterialCheck::new(&material, &intended)
+        MaterialCheck::new(&material, w_lig)
     }
 
     /// Whether a verdict of the severity contains the text.
@@ -317,9 +275,6 @@ mod tests {
         let notes = verdicts.all(|found| found.severity == Severity::Note);
         assert!(notes, "{check:?}");
         let [ligament] = check.ligaments[..] else { panic!("{check:?}") };
-        // The value of Table 2.
-        assert!((ligament.critical_edge / 10.0 - 6.3).abs() < 0.05);
-        assert!((250.0..350.0).contains(&ligament.gamma.unwrap()));
         assert_eq!(ligament.slenderness, 36.0);
         // The surface strain at the rotation of yield is the yield strain.
         let at_yield = 0.5 * ligament.yields_at_deg.unwrap().to_radians() / 36.0;
@@ -328,18 +283,13 @@ mod tests {
 
     #[test]
     fn every_limit_has_its_verdict() {
-        let lying_pitch = Some(50.0);
-        let small = Intended { lying_pitch, ..PAPER };
-        let w_lig = [3.0, 30.0];
-        let narrow = Intended { w_lig, ..PAPER };
         let with = |change: fn(&mut SheetMaterial)| check(change, PAPER);
-        let soft = check(|material| material.plastic[0][0] = 30.0, narrow);
+        let soft = check(|material| material.plastic[0][0] = 30.0, [3.0, 30.0]);
         for (check, severity, text) in [
             (&with(|it| it.fracture_strain = 0.03), Severity::Error, "tears"),
             (&with(|it| it.fracture_strain = 0.2), Severity::Warning, "may tear"),
             (&with(|it| it.young = 30e3), Severity::Warning, "22 MPa for each kg/m^3"),
             (&with(|it| it.plastic[1][1] = 0.02), Severity::Warning, "coarse meshes diverge"),
-            (&check(|_| {}, small), Severity::Warning, "does not hold the panels down"),
             (&soft, Severity::Warning, "3 mm is 6.0 thicknesses, of 30 mm is 60.0"),
             (&soft, Severity::Warning, "before they buckle"),
             (&with(|it| it.fracture_strain = 3.0), Severity::Note, "constant at 200 MPa"),
@@ -350,11 +300,9 @@ mod tests {
 
     #[test]
     fn the_ligament_of_a_plate_is_checked_as_one() {
-        let w_lig = [0.15, 0.475];
-        let intended = Intended { w_lig, lying_pitch: None };
-        let check = check(|material| material.fracture_strain = 1.7, intended);
+        let check = check(|material| material.fracture_strain = 1.7, [0.15, 0.475]);
         let [ligament, _] = check.ligaments[..] else { panic!("{check:?}") };
-        assert_eq!((ligament.buckles_at_deg, ligament.gamma), (None, None));
+        assert_eq!(ligament.buckles_at_deg, None);
         // The fracture strain 1.7 and the yield strain 44 / 3000 over 1.7 and over 0.4 for each
         // rad.
         assert!((ligament.tears_at_deg[0] - 57.7901).abs() < 1e-4);

@@ -23,7 +23,7 @@ use crate::{
 };
 use analysis::{
     fit::opening::{damage_of_turn, safe_opening},
-    material_check::{Intended, MaterialCheck},
+    material_check::{MaterialCheck, usual_widths},
 };
 use anyhow::{Result, bail, ensure};
 use hinge::{MIN_W_LIG, Regime, SheetMaterial};
@@ -104,7 +104,7 @@ impl NewProject {
         let is_even = (self.target.is_some() || self.any_width) && !fitting.is_empty();
         let first = FirstScene::new(self.size, cut_from, sheet.thickness, named, is_even)?;
         let regime = first.regime;
-        let check = MaterialCheck::new(&sheet, &Intended::usual(sheet.thickness, regime));
+        let check = MaterialCheck::new(&sheet, usual_widths(sheet.thickness, regime));
         let excluded: Vec<String> = check.errors().map(|it| it.message.clone()).collect();
         ensure!(
             excluded.is_empty(),

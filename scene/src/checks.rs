@@ -13,10 +13,7 @@ use crate::{
     target::Target,
 };
 use design::{
-    geometry::{
-        polygon::{bounds, distance, distance_to_outline, edges, mean, size},
-        region::Region,
-    },
+    geometry::polygon::{bounds, distance, distance_to_polygon, edges, mean, size},
     pattern::cut_pattern::CutPattern,
     sheet::{panel::boundary, topology::Topology},
 };
@@ -284,8 +281,7 @@ fn inside(scene: &SceneConfig, topology: &Topology, attached: &Attached) -> Resu
     let boundary = boundary(&corners, topology.trims[number].as_ref());
     let corners: Vec<_> = boundary.iter().map(|[x, y]| format!("({x:.1}, {y:.1})")).collect();
     ensure!(
-        distance_to_outline(*place, &boundary) < ON_EDGE
-            || Region::union_of(vec![boundary.clone()]).contains(*place),
+        distance_to_polygon(*place, &boundary) < ON_EDGE,
         "{key}.at = [{}, {}] mm is outside panel {panel:?} of the start, which has the corners {}",
         place[0],
         place[1],

@@ -52,13 +52,9 @@ fn records_of_a_film_become_a_material_file_that_is_checked() {
     }
 
     let check = "material check runs/material/film.toml configs/scenes/pet-7x7.toml";
-    work.prints(check, &["*PLASTIC", "Gamma"]);
+    work.prints(check, &["*PLASTIC", "buckles at"]);
     let checked: Value = work.json(&format!("{check} --json"));
     assert_eq!(checked["law_hash"], json["law_hash"]);
-    // The panels of the scene: 4200 mm over 7.
-    let [edge, gamma] =
-        ["critical_edge", "gamma"].map(|key| number(&checked, &format!("/ligaments/0/{key}")));
-    assert!(((600.0 / edge).powi(3) / gamma - 1.0).abs() < 1e-9);
 }
 
 /// The same force is in N by the file, in kN by an option, and in no stated unit.
@@ -121,8 +117,7 @@ fn a_brittle_material_fails_its_check() {
     let printed = String::from_utf8(output.stdout).unwrap();
     assert!(printed.contains("error: a film that opens by 60 deg, as most do, tears"), "{printed}");
     work.output("material check configs/materials/s235-1.5mm.toml");
-    // A plate of the shipped scene: neither its width nor its buckling nor Gamma, for a sheet on a
-    // surface, is a finding.
+    // A plate of the shipped scene: neither its width nor its buckling is a finding.
     let plate = "material check configs/materials/polypropylene-3mm.toml configs/scenes/a4-plate-service.toml";
     let plate = work.output(plate);
     assert!(!plate.contains("warning: "), "{plate}");

@@ -41,7 +41,10 @@ fn lost_parts_are_named_and_a_hidden_drawing_is_refused() {
         let svg = format!("<svg xmlns='http://www.w3.org/2000/svg'><path d='{path}'/></svg>");
         std::fs::write(work.path(file), svg).unwrap();
     };
-    drawing("flag.svg", "M0 0 L60 0 L60 60 L6 60 L6 140 L0 140 Z");
+    drawing(
+        "flag.svg",
+        "M0 0 L60 0 L60 60 L31 60 L31 80 L50 80 L50 120 L10 120 L10 80 L29 80 L29 60 L0 60 Z",
+    );
     let said = work.output("init flag --target flag.svg --thickness 2 --size 150x150 --anyway");
     assert!(said.contains("not shown: a part") && said.contains("at the bottom"), "{said}");
     drawing(
@@ -75,7 +78,7 @@ fn a_search_after_which_less_is_seen_is_a_warning() {
     work.output("init star --target configs/targets/star.svg --thickness 2 --size 180x180");
     work.prints(
         "design star/scene.toml --level draft --steps 10",
-        &["warning: after the search 95.5 % of the target is seen, before it 95.8 %"],
+        &["warning: after the search 95.4 % of the target is seen, before it 95.6 %"],
     );
 }
 

@@ -3,10 +3,12 @@
 
 use super::even_pattern::{GridIndex, centre, moved, neighbours, squares};
 use super::raster::Raster;
-use super::trimmed::{Limits, ON_EDGE, RINGS, largest_joined, loops, opened, panels};
+use super::trimmed::{
+    FlatPanels, Limits, ON_EDGE, RINGS, TrimmedEdge, largest_joined, loops, missing, opened,
+};
 use design::geometry::plane::{complex, point};
 use design::geometry::polygon::{bounds, distance_to_outline, distance_to_segment, size};
-use design::geometry::region::{Region, Ring, seen};
+use design::geometry::region::{Corners, Region, Ring, as_seen, seen};
 use design::geometry::similarity::Similarity;
 use design::pattern::grid::Grid;
 use design::sheet::topology::Topology;
@@ -20,11 +22,12 @@ use support::{Fault, ensure, refuse};
 /// Places that are tried along a pitch, and turns that are tried in a quarter turn.
 const SHIFTS: u32 = 4;
 const TURNS: u32 = 6;
-/// Places along the axis of a symmetric drawing.
+/// Places along two pitches of the axis of a symmetric drawing: rows next to each other are hinged
+/// above and below.
 const ALONG: u32 = 16;
 /// The search of a sheet, and a short one, which says whether there is one.
-pub(super) const THOROUGH: Search = Search { compared: 32, rounds: 4 };
-pub(super) const QUICK: Search = Search { compared: 3, rounds: 0 };
+pub(super) const THOROUGH: Search = Search { compared: 32, rounds: 4, limbs: false };
+pub(super) const QUICK: Search = Search { compared: 3, rounds: 0, limbs: false };
 /// Openings at which a panel may not meet another one, and few of them, by which places are
 /// compared; number of the places that are compared by all.
 const OPENINGS: u32 = 24;
@@ -47,10 +50,10 @@ const SYMMETRIC: f64 = 0.97;
 /// Points along the longer side of a drawing, and angles, for its axis.
 const SAMPLES: f64 = 256.0;
 const ANGLES: u32 = 360;
+/// How far a limb reaches into what is seen, in sides of a square: the gaps there, and a panel.
+const LIMB: f64 = 2.0;
 /// Distance of a corner on the opened pattern from the drawing up to which it is on it.
 const NEAR: f64 = 0.01;
-/// Distance of two corners of a panel at least.
-const APART: f64 = 1e-4;
 /// What a symmetric sheet may lose of the seen area.
 const FOR_SYMMETRY: f64 = 0.02;
 
@@ -64,16 +67,17 @@ pub struct EvenSheet {
     /// The drawing there.
     pub(super) drawing: Region,
     loops: BTreeSet<GridIndex>,
-    panels: BTreeMap<GridIndex, Region>,
+    panels: FlatPanels,
     /// Intersection over union of what one sees of the opened panels and the drawing.
     pub seen: f64,
 }
 
-/// How many places are compared, and how often the best one is moved.
+/// How many places are compared, how often the best one is moved, and whether panels have limbs.
 #[derive(Clone, Copy)]
 pub(super) struct Search {
-    compared: usize,
-    rounds: i32,
+    pub(super) compared: usize,
+    pub(super) rounds: i32,
+    pub(super) limbs: bool,
 }
 
 impl EvenSheet {
@@ -94,7 +98,7 @@ impl EvenSheet {
         let symmetric = mirror_axis(&drawing).and_then(|(angle, centroid)| {
             let turn = FRAC_PI_2 - angle;
             let along = |scale| {
-                let places = (0..ALONG).map(|v| [0.0, f64::from(v) / f64::from(ALONG)]);
+                let places = (0..ALONG).map(|v| [0.0, 2.0 * f64::from(v) / f64::from(ALONG)]);
                 places.map(move |at| placed(centroid, scale, turn, at, &limits))
             };
             best(&drawing, limits, scales.clone().flat_map(along).collect(), search, &ON_AXIS)
@@ -147,8 +151,9 @@ impl EvenSheet {
             !loops.is_empty() && largest_joined(loops.clone()) == loops,
             "the sheet would be no mechanism of one piece: each panel is one of four around a gap, and gaps are joined by two panels"
         );
-        let panels = BTreeMap::new();
-        Ok(Self { limits, place, drawing, loops, panels, seen: 0.0 }.with_panels(OPENINGS))
+        let panels = FlatPanels::new();
+        let sheet = Self { limits, place, drawing, loops, panels, seen: 0.0 };
+        Ok(sheet.with_panels(OPENINGS, true))
     }
 
     /// How many points of the drawing are so near to the squares that panels may have them; `None`
@@ -173,9 +178,22 @@ impl EvenSheet {
         self.fits(&flat).then_some(flat.len())
     }
 
-    fn with_panels(mut self, openings: u32) -> Self {
-        self.panels = panels(&self.drawing, &self.loops, &self.limits, openings);
-        self.seen = seen(opened(&self.panels, self.limits.opening), &self.drawing);
+    /// The same with panels, and, with `limbs`, where the drawing is too narrow for squares, rigid parts
+    /// of any length if they fit into the stock.
+    fn with_panels(mut self, openings: u32, limbs: bool) -> Self {
+        let edge = TrimmedEdge::new(&self.drawing, &self.loops, &self.limits);
+        self.panels = edge.panels(openings);
+        let missing =
+            limbs.then(|| missing(&self.drawing, &as_seen(self.opened(1.0), &self.drawing)));
+        for limb in missing.into_iter().flatten() {
+            let limb = limb.offset(LIMB, Corners::Round).common(&self.drawing);
+            let Some(panels) = edge.with_limb(&self.panels, &limb, openings) else { continue };
+            let without = std::mem::replace(&mut self.panels, panels);
+            if !self.fits(&self.opened(0.0).concat()) {
+                self.panels = without;
+            }
+        }
+        self.seen = seen(self.opened(1.0), &self.drawing);
         self
     }
 
@@ -255,17 +273,14 @@ impl EvenSheet {
     }
 }
 
-/// Without corners next to each other, on a straight edge or at the tip of a line without width, but
-/// with all of the cell.
+/// Without corners next to each other or on a straight edge, but with all of the cell.
 fn distinct(mut boundary: Ring) -> Ring {
     let is_idle = |boundary: &Ring, i: usize| {
         let n = boundary.len();
         let [before, at, after] = [i + n - 1, i, i + 1].map(|k| boundary[k % n]);
         let is_of_cell = at.iter().all(|x| *x == 0.0 || *x == 1.0);
-        let turns_back = distance_to_segment(after, before, at) < APART
-            || distance_to_segment(before, at, after) < APART;
         let is_straight = distance_to_segment(at, before, after) < ON_EDGE;
-        at == after || !is_of_cell && (turns_back || is_straight)
+        at == after || !is_of_cell && is_straight
     };
     while let Some(i) = (0..boundary.len()).find(|i| is_idle(&boundary, *i)) {
         boundary.remove(i);
@@ -306,7 +321,7 @@ fn best(
         let drawing = drawing.map(|at| moved(place, at));
         let inside = |at| raster.contains(point(place.back(complex(at))));
         let loops = loops(drawing.bounds(), &limits, &inside);
-        let panels = BTreeMap::new();
+        let panels = FlatPanels::new();
         let sheet = EvenSheet { limits, place, drawing, loops, panels, seen: 0.0 };
         Some((sheet.in_reach(&points)?, sheet))
     };
@@ -316,7 +331,7 @@ fn best(
         found.into_iter().map(|(_, sheet)| sheet).take(search.compared).collect()
     };
     let made = |places: Vec<EvenSheet>, openings| {
-        let made = places.into_par_iter().map(|sheet| sheet.with_panels(openings));
+        let made = places.into_par_iter().map(|sheet| sheet.with_panels(openings, search.limbs));
         made.filter(|sheet| sheet.fits(&sheet.opened(0.0).concat())).collect()
     };
     let sort = |sheets: &mut Vec<EvenSheet>| {
@@ -408,7 +423,10 @@ mod tests {
             drawing = drawing.minus(&Region::even_odd(vec![hole]));
         }
         drawing.polygons.truncate(1);
-        drawing
+        // A handle that is too narrow for squares.
+        let handle = vec![[0.0, -0.8], [19.0, -0.8], [19.0, 0.8], [0.0, 0.8]];
+        let handle = Region::union_of(vec![handle]);
+        if seed.is_multiple_of(2) { drawing } else { drawing.union(&handle) }
     }
 
     /// What one sees of panels, by points of a raster instead of polygons.
@@ -457,7 +475,8 @@ mod tests {
     #[test]
     fn drawn_sheets_are_mechanisms_whose_panels_never_overlap() {
         let seen = |seed| {
-            let sheet = EvenSheet::new(&drawn(seed), &[10.0], LIMITS, QUICK)?;
+            let sheet =
+                EvenSheet::new(&drawn(seed), &[10.0], LIMITS, Search { limbs: true, ..QUICK })?;
             let whole: f64 = sheet.panels.values().map(Region::area).sum();
             for step in 0..=20 {
                 let opened = Region::union_of(sheet.opened(f64::from(step) / 20.0));

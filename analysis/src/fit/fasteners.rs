@@ -3,8 +3,7 @@
 use crate::mounting::borne_by_hole;
 use crate::out_of_plane::Stability;
 use design::equilibrium::warm_start::WarmStart;
-use design::geometry::polygon::{bounds, distance, distance_to_outline, size};
-use design::geometry::region::Region;
+use design::geometry::polygon::{bounds, contains, distance, distance_to_outline, size};
 use design::hinge_law::DamageMeasure;
 use design::objective::terms::damage::NEARLY_TORN;
 use design::sheet::kinematics::deployed;
@@ -120,8 +119,7 @@ impl Candidates {
         }
         let has_room = |panel: &usize| {
             topology.trims[*panel].as_ref().is_none_or(|trim| {
-                let room = distance_to_outline(MIDDLE, trim);
-                room > ROOM && Region::union_of(vec![trim.to_vec()]).contains(MIDDLE)
+                distance_to_outline(MIDDLE, trim) > ROOM && contains(trim, MIDDLE)
             })
         };
         let panels = (0..topology.panel_count()).filter(has_room).collect();

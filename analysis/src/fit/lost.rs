@@ -1,17 +1,11 @@
 //! The parts of a drawing that its sheet does not show.
 
 use crate::fit::even_sheet::{EvenSheet, QUICK};
-use crate::fit::trimmed::Limits;
+use crate::fit::trimmed::{Limits, missing};
 use design::geometry::plane::{complex, point};
 use design::geometry::region::{Corners, Region, as_seen};
 use design::objective::centre;
 
-/// Width of the differences between drawing and sheet that a viewer does not miss, in sides of a
-/// panel, and the part of the area of the drawing that is missed.
-const SLIVER: f64 = 0.25;
-const MISSED: f64 = 0.01;
-/// Area of a gap between opened panels at most, in squares.
-const VOID: f64 = 1.5;
 /// Halvings of the width of a part.
 const HALVINGS: usize = 12;
 /// Factors by which the tried sheets are larger.
@@ -30,19 +24,16 @@ pub struct Lost {
 pub(super) fn lost(sheet: &EvenSheet) -> Vec<Lost> {
     let drawing = &sheet.drawing;
     let seen = as_seen(sheet.opened(1.0), drawing);
-    let missing = drawing.minus(&seen).opened(0.5 * SLIVER);
-    let missed = f64::max(MISSED * drawing.area(), VOID);
-    let parts = missing.polygons.into_iter().map(|part| Region { polygons: vec![part] });
     let upright = |at: [f64; 2]| point(sheet.place.back(complex(at)));
     let [low, high] = drawing.map(upright).bounds();
     let third = |at: [f64; 2]| {
         [0, 1].map(|c| (3.0 * (at[c] - low[c]) / (high[c] - low[c])).clamp(0.0, 2.9) as i32 - 1)
     };
-    let lost = parts.filter(|part| part.area() > missed).map(|part| Lost {
+    let lost = |part: Region| Lost {
         place: third(upright(centre::of(&part.polygons[0][0]))),
         width: width(&part),
-    });
-    let mut lost: Vec<Lost> = lost.collect();
+    };
+    let mut lost: Vec<Lost> = missing(drawing, &seen).into_iter().map(lost).collect();
     lost.sort_by(|one, other| other.width.total_cmp(&one.width));
     lost
 }

@@ -8,7 +8,7 @@ use crate::fit::lost::{Lost, kept_by, lost};
 use crate::fit::opening::{free_axial_opening, safe_opening};
 use crate::fit::trimmed::{Limits, TOLERANCE};
 use design::geometry::plane::{complex, point};
-use design::geometry::polygon::bounds;
+use design::geometry::polygon::{bounds, size};
 use design::geometry::region::{Region, Ring};
 use design::geometry::similarity::Similarity;
 use design::pattern::grid::Grid;
@@ -162,9 +162,9 @@ fn even_sheet(scene: &Scene, side: f64, search: Search) -> Result<EvenSheet, Fau
 fn limits(scene: &Scene, side: f64) -> Limits {
     let angle = opening(scene);
     let process = scene.config.process;
-    let space = Region::union_of(vec![scene.config.sheet.outline().corners.to_vec()]);
+    let space = bounds(scene.config.sheet.outline().corners);
     Limits {
-        stock: space.extent().map(|length| length / side),
+        stock: size(space).map(|length| length / side),
         opening: Opening { angle, set_back: set_back(scene, angle) / side },
         // The window is about the tip of the cut.
         window: (process.r_win + width(scene) + 0.5 * process.slit_width) / side + TOLERANCE,
@@ -217,9 +217,19 @@ fn set_back(scene: &Scene, angle: f64) -> f64 {
 /// before the last percents of its size.
 fn largest(target: &Region, limits: Limits, search: Search) -> Option<EvenSheet> {
     let size = growth(target.extent(), limits.stock) * target.longer_side();
-    LARGEST.into_iter().find_map(|part| {
+    let with = |part: f64, search| {
         EvenSheet::new(target, &SIZES.map(|factor| factor * part * size), limits, search)
-    })
+    };
+    let mut best = LARGEST.into_iter().find_map(|part| with(part, search))?;
+    // With limbs a flat sheet is larger: they do not become smaller when it closes.
+    for part in LARGEST {
+        if lost(&best).is_empty() {
+            break;
+        }
+        let limbs = Search { limbs: true, ..search };
+        best = with(part, limbs).filter(|it| it.seen > best.seen).unwrap_or(best);
+    }
+    Some(best)
 }
 
 /// The keys of the scene with fasteners, one after the other where panels are farthest from the even

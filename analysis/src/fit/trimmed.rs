@@ -15,8 +15,6 @@ use design::geometry::region::{Corners, Region, Ring};
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_2};
 
-/// How far the squares are apart at most whose panels may meet.
-const NEAR: i32 = 5;
 /// Rows of missing squares that become parts of panels.
 pub(super) const RINGS: usize = 2;
 /// How far the part of the drawing that counts for a square is from its edges.
@@ -27,10 +25,16 @@ const LEAST_PART: f64 = 0.02;
 pub(super) const TOLERANCE: f64 = 6e-3;
 /// Half the width of a gap between parts of a panel that is a rounding error.
 const HAIR: f64 = 1e-3;
+/// Width of the differences between drawing and sheet that a viewer does not miss, in sides of a
+/// panel, and the part of the area of the drawing that is missed.
+const SLIVER: f64 = 0.25;
+const MISSED: f64 = 0.01;
+/// Area of a gap between opened panels at most, in squares.
+const VOID: f64 = 1.5;
 /// Area of a hole that is a rounding error.
 const FILLED: f64 = 1e-4;
 /// Distance from an edge of a square up to which a point is on it.
-pub(super) const ON_EDGE: f64 = 1e-6;
+pub(super) const ON_EDGE: f64 = 1e-5;
 /// How far a window is outside the drawing at most: the border of a drawing may be an edge of squares.
 const ON_BORDER: f64 = 0.03;
 /// Points on the arc of a window in a square.
@@ -52,6 +56,9 @@ pub struct Limits {
     /// Width of a slit, which is between squares side by side that do not hang together.
     pub slit: f64,
 }
+
+/// The flat panels of squares.
+pub(super) type FlatPanels = BTreeMap<GridIndex, Region>;
 
 /// The largest set of loops, joined by pairs of squares, whose windows are in an opened drawing.
 pub(super) fn loops(
@@ -105,54 +112,9 @@ fn sector(cell: GridIndex, corner: GridIndex, limits: &Limits) -> Ring {
     arc.chain([corner]).collect()
 }
 
-/// The flat panels of the squares of `loops`, trimmed to an opened drawing, so that none meets
-/// another one at any of some openings.
-pub(super) fn panels(
-    drawing: &Region,
-    loops: &BTreeSet<GridIndex>,
-    limits: &Limits,
-    openings: u32,
-) -> BTreeMap<GridIndex, Region> {
-    let edge = TrimmedEdge::new(drawing, loops, limits);
-    let parts = edge.parts();
-    // Small parts first: they leave the large ones less, and parts of one size, as a mirror
-    // exchanges them, leave each other what both want.
-    let size = |cell: &GridIndex| (1e3 * parts[cell].area()).round() as i64;
-    let mut order: Vec<GridIndex> = edge.squares.iter().copied().collect();
-    order.sort_by_key(size);
-    let mut done: BTreeMap<GridIndex, Region> = BTreeMap::new();
-    for cell in order {
-        if !edge.drawing.contains_key(&cell) {
-            done.insert(cell, Region::union_of(vec![corners(cell)]));
-            continue;
-        }
-        let square = edge.square(cell);
-        let part = &parts[&cell];
-        let panel = if part.polygons.is_empty() {
-            square.clone()
-        } else {
-            let of_other = |other: GridIndex| match done.get(&other) {
-                _ if size(&other) == size(&cell) => {
-                    Region::union_of(vec![corners(other)]).union(&parts[&other])
-                }
-                Some(panel) => panel.clone(),
-                None => Region::union_of(vec![corners(other)]),
-            };
-            let taken =
-                edge.passed(cell, part, openings, of_other).offset(limits.gap, Corners::Round);
-            let whole = square.union(&part.minus(&taken));
-            let wide = square.union(&whole.opened(0.5 * limits.width).common(&whole));
-            let panel = with_most_of(wide, &square);
-            // A hole that another panel passes through cannot be filled.
-            let holes = panel.filled().minus(&panel);
-            if holes.common(&taken).area() > FILLED { square.clone() } else { panel }
-        };
-        let panel = with_most_of(panel, &square).joined(HAIR).filled();
-        // Cuts run along the edges of the squares.
-        let panel = panel.simplified(TOLERANCE, |at| is_on_edge(cell, at));
-        done.insert(cell, with_most_of(panel, &square));
-    }
-    done
+/// A square.
+fn whole(cell: GridIndex) -> Region {
+    Region::union_of(vec![corners(cell)])
 }
 
 /// Whether a point is on an edge of a square.
@@ -173,7 +135,7 @@ fn with_most_of(region: Region, other: &Region) -> Region {
 }
 
 /// The squares of a drawing and what its edge needs.
-struct TrimmedEdge<'a> {
+pub(super) struct TrimmedEdge<'a> {
     limits: &'a Limits,
     squares: BTreeSet<GridIndex>,
     hinges: BTreeSet<HingedSquares>,
@@ -183,7 +145,8 @@ struct TrimmedEdge<'a> {
 }
 
 impl<'a> TrimmedEdge<'a> {
-    fn new(drawing: &Region, loops: &BTreeSet<GridIndex>, limits: &'a Limits) -> Self {
+    /// The squares of `loops` in an opened drawing.
+    pub(super) fn new(drawing: &Region, loops: &BTreeSet<GridIndex>, limits: &'a Limits) -> Self {
         let hinges = loops.iter().flat_map(|at| pairs(*at)).collect();
         let edge = Self { limits, squares: squares(loops), hinges, drawing: BTreeMap::new() };
         let seen = |cell: &GridIndex| {
@@ -201,6 +164,88 @@ impl<'a> TrimmedEdge<'a> {
             (!is_inside).then(|| (*cell, around()))
         };
         Self { drawing: edge.squares.iter().filter_map(seen).collect(), ..edge }
+    }
+
+    /// The flat panels of the squares, trimmed to the drawing, so that none meets another one at any
+    /// of some openings.
+    pub(super) fn panels(&self, openings: u32) -> FlatPanels {
+        let parts = self.parts();
+        // Small parts first: they leave the large ones less, and parts of one size, as a mirror
+        // exchanges them, leave each other what both want.
+        let size = |cell: &GridIndex| (1e3 * parts[cell].area()).round() as i64;
+        let mut order: Vec<GridIndex> = self.squares.iter().copied().collect();
+        order.sort_by_key(size);
+        let mut done: FlatPanels = order.iter().map(|cell| (*cell, whole(*cell))).collect();
+        for cell in order.into_iter().filter(|cell| self.drawing.contains_key(cell)) {
+            let part = &parts[&cell];
+            let of_other = |other: GridIndex| {
+                if size(&other) == size(&cell) {
+                    whole(other).union(&parts[&other])
+                } else {
+                    done[&other].clone()
+                }
+            };
+            let panel = self.with_part(cell, &self.square(cell), part, openings, of_other);
+            done.insert(cell, panel);
+        }
+        done
+    }
+
+    /// The panels with a limb, a part of the opened drawing, at the panel that has the most of it;
+    /// `None` if none has most.
+    pub(super) fn with_limb(
+        &self,
+        panels: &FlatPanels,
+        limb: &Region,
+        openings: u32,
+    ) -> Option<FlatPanels> {
+        let seen_by = |cell: &GridIndex| {
+            let motion = self.limits.opening.motion(*cell);
+            limb.map(|at| point(motion.back(complex(at))))
+        };
+        let touches =
+            |(cell, panel): &(&GridIndex, &Region)| seen_by(cell).common(panel).area() > 0.0;
+        let roots: Vec<GridIndex> = panels.iter().filter(touches).map(|(cell, _)| *cell).collect();
+        let mut bare = panels.clone();
+        bare.extend(roots.iter().map(|cell| (*cell, self.square(*cell))));
+        let of_bare = |cell| bare[&cell].clone();
+        let limbs = roots.iter().map(|cell| {
+            let limb = panels[cell].union(&seen_by(cell));
+            (*cell, self.with_part(*cell, &bare[cell], &limb, openings, of_bare))
+        });
+        let more = |(cell, larger): &(GridIndex, Region)| larger.area() - bare[cell].area();
+        let limbs = limbs.filter(|it| more(it) > 0.5 * limb.area());
+        let (of, larger) = limbs.max_by(|one, other| more(one).total_cmp(&more(other)))?;
+        bare.insert(of, larger);
+        for cell in roots.into_iter().filter(|cell| *cell != of) {
+            let of_other = |other| bare[&other].clone();
+            let panel = self.with_part(cell, &bare[&cell], &panels[&cell], openings, of_other);
+            bare.insert(cell, panel);
+        }
+        Some(bare)
+    }
+
+    /// A panel with a part as well, less what other panels pass through, if it needs no hole.
+    fn with_part(
+        &self,
+        cell: GridIndex,
+        panel: &Region,
+        part: &Region,
+        openings: u32,
+        of_other: impl Fn(GridIndex) -> Region,
+    ) -> Region {
+        let taken =
+            self.passed(cell, part, openings, of_other).offset(self.limits.gap, Corners::Round);
+        let whole = panel.union(&part.minus(&taken));
+        let wide = panel.union(&whole.opened(0.5 * self.limits.width).common(&whole));
+        let larger = with_most_of(wide, panel).joined(HAIR);
+        // A hole that another panel passes through cannot be filled.
+        let holes = larger.filled().minus(&larger);
+        let is_passed = holes.common(&taken).area() > FILLED;
+        let larger = if is_passed { panel.joined(HAIR) } else { larger }.filled();
+        // Cuts run along the edges of the squares.
+        let larger = larger.simplified(TOLERANCE, |at| is_on_edge(cell, at));
+        with_most_of(larger, panel)
     }
 
     /// The hinges of a square.
@@ -226,11 +271,12 @@ impl<'a> TrimmedEdge<'a> {
             ]
         };
         let strips = neighbours(cell).into_iter().filter(is_apart).map(strip).collect();
-        let square = Region::union_of(vec![corners(cell)]).minus(&Region::union_of(strips));
+        let square = whole(cell).minus(&Region::union_of(strips));
         let hinges = self.hinges_of(cell);
         let sectors = hinges.map(|pair| sector(cell, hinge(*pair), self.limits)).collect();
         let windows = Region::even_odd(sectors).common(&square);
-        square.common(&self.drawing[&cell]).union(&windows)
+        let drawing = self.drawing.get(&cell);
+        drawing.map_or(square.clone(), |drawing| square.common(drawing).union(&windows))
     }
 
     /// The parts of every panel: missing squares, row by row, in the neighbour that has the most of
@@ -244,7 +290,7 @@ impl<'a> TrimmedEdge<'a> {
             let missing = around.into_iter().filter(|cell| !owner.contains_key(cell));
             let found: Vec<(GridIndex, GridIndex)> = missing
                 .filter_map(|cell| {
-                    let square = Region::union_of(vec![corners(cell)]);
+                    let square = whole(cell);
                     let owners = neighbours(cell).into_iter().filter_map(|n| owner.get(&n));
                     let fits = owners.filter(|of| !self.is_beyond_hinge(**of, cell));
                     let area = |of: &GridIndex| self.drawing[of].common(&square).area();
@@ -289,14 +335,18 @@ impl<'a> TrimmedEdge<'a> {
     ) -> Region {
         let mut passed: Vec<Ring> =
             self.hinges_of(cell).map(|pair| self.slit(cell, pair)).collect();
-        let is_near = |other: &&GridIndex| {
-            **other != cell && (0..2).all(|c| (other[c] - cell[c]).abs() <= NEAR)
-        };
-        for other in self.squares.iter().filter(is_near) {
+        let here = centre(cell);
+        let widest = part.contours().flatten().map(|at| distance(here, *at)).fold(0.0, f64::max);
+        for other in self.squares.iter().filter(|other| **other != cell) {
             let panel = of_other(*other);
             let [from, to] = panel.bounds();
             let middle = [0, 1].map(|c| 0.5 * (from[c] + to[c]));
             let reach = distance(middle, to) + self.limits.gap;
+            // The centres move apart when the pattern opens.
+            let there = centre(*other);
+            if distance(here, there) - distance(there, middle) > widest + reach {
+                continue;
+            }
             for step in 0..=openings {
                 let opening = self.limits.opening.part(f64::from(step) / f64::from(openings));
                 let motion = opening.relative_motion(*other, cell);
@@ -324,8 +374,16 @@ impl<'a> TrimmedEdge<'a> {
     }
 }
 
+/// The parts of an opened drawing that are missed where a part of it is seen.
+pub(super) fn missing(drawing: &Region, seen: &Region) -> Vec<Region> {
+    let missing = drawing.minus(seen).opened(0.5 * SLIVER);
+    let missed = f64::max(MISSED * drawing.area(), VOID);
+    let parts = missing.polygons.into_iter().map(|part| Region { polygons: vec![part] });
+    parts.filter(|part| part.area() > missed).collect()
+}
+
 /// The contours of opened panels.
-pub(super) fn opened(panels: &BTreeMap<GridIndex, Region>, opening: Opening) -> Vec<Ring> {
+pub(super) fn opened(panels: &FlatPanels, opening: Opening) -> Vec<Ring> {
     let moved = |(cell, panel): (&GridIndex, &Region)| {
         let motion = opening.motion(*cell);
         panel.map(|at| moved(motion, at)).polygons.into_iter().flatten()

@@ -7,10 +7,7 @@
 //! encloses, less what lines inside of it enclose.
 
 use contour::ContourBuilder;
-use design::geometry::{
-    polygon,
-    region::{Region, Ring},
-};
+use design::geometry::{polygon, region::Ring};
 use image::{
     DynamicImage, ImageDecoder, ImageFormat, ImageReader, ImageResult, Rgba, RgbaImage,
     guess_format,
@@ -157,10 +154,8 @@ fn shapes(mut rings: Vec<Ring>) -> (Vec<Ring>, bool) {
     rings.sort_by(|one, other| area(other).abs().total_cmp(&area(one).abs()));
     let largest = rings.first().map_or(0.0, |ring| area(ring).abs());
     rings.retain(|ring| area(ring).abs() > SPECK * largest);
-    let inside: Vec<Region> =
-        rings.iter().map(|ring| Region { polygons: vec![vec![ring.clone()]] }).collect();
     let around: Vec<Vec<usize>> = (0..rings.len())
-        .map(|i| (0..i).filter(|outer| inside[*outer].contains(rings[i][0])).collect())
+        .map(|i| (0..i).filter(|outer| polygon::contains(&rings[*outer], rings[i][0])).collect())
         .collect();
     let is_line = |outermost: usize| {
         let members =

@@ -41,14 +41,17 @@ pub fn clip(polygon: &[Point], height: impl Fn(Point) -> f64) -> Vec<Point> {
     kept
 }
 
-/// Whether a convex counter-clockwise polygon contains a point; its border belongs to it.
-pub fn contains(polygon: &[Point], point: Point) -> bool {
-    edges(polygon).all(|(p, q)| side((p, q), point) >= -1e-9 * vector(p, q).norm_sqr())
+/// Whether a polygon contains a point; its border belongs to one of its sides.
+pub fn contains(polygon: &[Point], [x, y]: Point) -> bool {
+    let passed = edges(polygon).filter(|(p, q)| {
+        (p[1] > y) != (q[1] > y) && x < p[0] + (y - p[1]) / (q[1] - p[1]) * (q[0] - p[0])
+    });
+    passed.count() % 2 == 1
 }
 
-/// Distance from a point to a convex counter-clockwise polygon; infinite if it is empty (mm).
+/// Distance from a point to a polygon; infinite if it is empty (mm).
 pub fn distance_to_polygon(point: Point, polygon: &[Point]) -> f64 {
-    if !polygon.is_empty() && contains(polygon, point) {
+    if contains(polygon, point) {
         return 0.0;
     }
     edges(polygon).map(|(p, q)| distance_to_segment(point, p, q)).smallest()

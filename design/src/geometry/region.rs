@@ -128,12 +128,8 @@ impl Region {
     }
 
     /// Whether the region contains a point; the border belongs to one of its sides.
-    pub fn contains(&self, [x, y]: Point) -> bool {
-        let edges = self.contours().flat_map(|contour| polygon::edges(contour));
-        let passed = edges.filter(|(p, q)| {
-            (p[1] > y) != (q[1] > y) && x < p[0] + (y - p[1]) / (q[1] - p[1]) * (q[0] - p[0])
-        });
-        passed.count() % 2 == 1
+    pub fn contains(&self, point: Point) -> bool {
+        self.contours().filter(|contour| polygon::contains(contour, point)).count() % 2 == 1
     }
 
     /// The image under a map that keeps the orientation.

@@ -1,7 +1,7 @@
 //! The contours that lie in others: the holes of an outline.
 
 use crate::drawing::contour::{Contour, LISTED, crossing};
-use design::geometry::{polygon, region::Region};
+use design::geometry::polygon;
 use support::{Fault, refuse};
 
 /// Smallest area of a hole over the area of the outline: specks of a tracing are smaller.
@@ -12,7 +12,6 @@ pub(super) fn around(contours: &[Contour]) -> Vec<Vec<usize>> {
     let boxes: Vec<_> = contours.iter().map(Contour::bounds).collect();
     let mut around = vec![Vec::new(); contours.len()];
     for outer in (0..contours.len()).filter(|outer| contours[*outer].is_whole()) {
-        let inside = Region { polygons: vec![vec![contours[outer].points.clone()]] };
         let overlaps = |inner: usize| {
             let ([low, high], [other_low, other_high]) = (boxes[inner], boxes[outer]);
             (0..2).all(|c| low[c] <= other_high[c] && other_low[c] <= high[c])
@@ -21,7 +20,7 @@ pub(super) fn around(contours: &[Contour]) -> Vec<Vec<usize>> {
             let contour = &contours[inner];
             if contour.is_whole()
                 && overlaps(inner)
-                && contour.points.iter().any(|point| inside.contains(*point))
+                && contour.points.iter().any(|at| polygon::contains(&contours[outer].points, *at))
             {
                 around[inner].push(outer);
             }

@@ -1,10 +1,10 @@
 //! `kirigami material check`: what a material means for windows and sheets.
 
-use analysis::material_check::{Intended, MaterialCheck};
+use analysis::material_check::{MaterialCheck, usual_widths};
 use anyhow::{Result, bail, ensure};
 use clap::Args;
 use hinge::{Regime, SheetMaterial};
-use scene::{Posture, SceneConfig, run_inputs::scene_file};
+use scene::{SceneConfig, run_inputs::scene_file};
 use std::path::PathBuf;
 use support::{
     table::{Cell, Table},
@@ -13,16 +13,15 @@ use support::{
 
 /// Check a material before windows are solved with it
 ///
-/// Prints the law as the window solver reads it, the critical panel edge L* and Gamma (21)-(22),
-/// thickness against ligament width, buckling against yield, and the openings at which ligaments
-/// tear. Exits with 1 if a verdict is an error. Example: kirigami material check
+/// Prints the law as the window solver reads it, thickness against ligament width, buckling against
+/// yield, and the openings at which ligaments tear. Exits with 1 if a verdict is an error. Example: kirigami material check
 /// configs/materials/pet-0.5mm.toml configs/scenes/pet-7x7.toml
 #[derive(Args)]
 pub(crate) struct CheckCommand {
     /// Material (TOML); see configs/materials
     #[arg(value_name = "MATERIAL")]
     material: PathBuf,
-    /// Scene (TOML), or the folder of a run, whose ligament widths and panels are intended; its own
+    /// Scene (TOML), or the folder of a run, whose ligament widths are intended; its own
     /// material is not read
     #[arg(value_name = "SCENE")]
     scene: Option<PathBuf>,
@@ -41,16 +40,17 @@ impl CheckCommand {
         let thickness = scene.as_ref().and_then(|scene| scene.thickness);
         let material =
             SheetMaterial { thickness: thickness.unwrap_or(measured.thickness), ..measured };
-        let intended = intended(&material, scene.as_ref());
+        let usual = usual_widths(material.thickness, Regime::usual(material.thickness));
+        let w_lig = scene.map_or(usual, |scene| scene.ligament.range);
         if let Some(scene) = &self.scene {
-            let [min, max] = intended.w_lig;
+            let [min, max] = w_lig;
             ensure!(
                 0.0 < min && min < max && max.is_finite(),
                 "{}: ligament.range = [{min}, {max}] mm violates 0 < minimum < maximum",
                 scene.display()
             );
         }
-        let check = MaterialCheck::new(&material, &intended);
+        let check = MaterialCheck::new(&material, w_lig);
         if self.json {
             println!("{}", serde_json::to_string_pretty(&check)?);
         } else {
@@ -61,22 +61,6 @@ impl CheckCommand {
             1 => bail!("the material has 1 error for this use"),
             count => bail!("the material has {count} errors for this use"),
         }
-    }
-}
-
-/// The use that a scene states, and without a scene the widths for which there are hinge data.
-fn intended(material: &SheetMaterial, scene: Option<&SceneConfig>) -> Intended {
-    let usual = Intended::usual(material.thickness, Regime::usual(material.thickness));
-    let lying = scene.filter(|scene| {
-        let posture = scene.posture.as_ref();
-        posture.is_none_or(|posture| posture.kind == Posture::Lying)
-    });
-    Intended {
-        w_lig: scene.map_or(usual.w_lig, |scene| scene.ligament.range),
-        lying_pitch: lying.map(|scene| {
-            let panels = scene.sheet.grid().panel_count();
-            (scene.sheet.outline().area() / panels as f64).sqrt()
-        }),
     }
 }
 
@@ -96,15 +80,8 @@ fn print(material: &SheetMaterial, check: &MaterialCheck) {
         rows.row([(index + 1).to_string(), stress.to_string(), strain.to_string(), slope]);
     }
     println!("{rows}\n");
-    let mut widths = Table::new([
-        "w_lig\nmm",
-        "w/t",
-        "buckles at\ndeg",
-        "surface yields at\ndeg",
-        "tears",
-        "L*\nmm",
-        "Gamma",
-    ]);
+    let mut widths =
+        Table::new(["w_lig\nmm", "w/t", "buckles at\ndeg", "surface yields at\ndeg", "tears"]);
     for it in &check.ligaments {
         widths.row([
             Cell::fixed(it.w_lig, 2),
@@ -112,8 +89,6 @@ fn print(material: &SheetMaterial, check: &MaterialCheck) {
             Cell::fixed(it.buckles_at_deg, 2),
             Cell::fixed(it.yields_at_deg, 1),
             Cell::text(it.tears()),
-            Cell::fixed(it.critical_edge, 0),
-            Cell::fixed(it.gamma, 3),
         ]);
     }
     println!("{widths}\n");

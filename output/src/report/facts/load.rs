@@ -7,7 +7,6 @@ use crate::report::{
     numbers::rounded,
 };
 use analysis::{
-    localisation::elasto_gravity_length,
     springback::{ResidualShape, TOO_FAR, moment_after_overshoot, unload},
     unit::Unit,
 };
@@ -71,10 +70,6 @@ pub(super) fn holding_and_weight(of: &DeployedDesign, _: &FinishedRun) -> Vec<Fa
             relative(FRICTION)
         );
         facts.push(number("friction", FRICTION * of.weight(), 3, Unit::Newton, &remark));
-        let (unit, length) = (Unit::Millimetre, elasto_gravity_length(&of.scene.material));
-        let ratio = rounded(length / of.scene.config.process.r_win, 2);
-        let said = format!("l_eg {} mm, {ratio} times the radius of a window", rounded(length, 3));
-        facts.push(Fact { unit, ..fact("bending by weight", length, said) });
     }
     facts
 }

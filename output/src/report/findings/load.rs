@@ -14,7 +14,7 @@ use analysis::{
 };
 use design::{
     equilibrium::load_step::{LoadStep, Status},
-    geometry::polygon::contains,
+    geometry::polygon::distance_to_polygon,
     sheet::cut_sheet::PanelPoint,
 };
 use hinge::Regime;
@@ -94,7 +94,7 @@ pub(super) const RULES: [Rule; 14] = [
             let outside = attachments.filter(|attachment| {
                 let panel = &panels[attachment.panel];
                 matches!(attachment.point, PanelPoint::Fixed(_))
-                    && !contains(&panel.corners, panel.reference)
+                    && distance_to_polygon(panel.reference, &panel.boundary) > 1e-6
             });
             let outside: Vec<String> = outside.map(|attachment| attachment.name).collect();
             (!outside.is_empty()).then(|| {
