@@ -29,7 +29,7 @@ use support::{
 };
 
 /// Distance of a point on the edge of a panel from it (mm).
-const ON_EDGE: f64 = 1e-6;
+pub const ON_EDGE: f64 = 1e-6;
 
 /// Checks the keys that say which files are read.
 pub(super) fn keys(scene: &SceneConfig) -> Result<(), Fault> {

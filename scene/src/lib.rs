@@ -54,6 +54,7 @@ pub use actuation::{
 pub use boundary_values::{Actuation, AppliedLoad, SupportedPanel, panel_name};
 pub use cells::{CellsConfig, TrimmedPanel};
 pub use checked_scene::{FILLS_HOLES, Scene};
+pub use checks::ON_EDGE;
 pub use coarse_search::{CoarseSearch, LevelDifference};
 pub use cutting::CuttingConfig;
 pub use design::objective::terms::ObjectiveConfig;

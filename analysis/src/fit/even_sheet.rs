@@ -8,7 +8,7 @@ use super::trimmed::{
 };
 use design::geometry::plane::{complex, point};
 use design::geometry::polygon::{bounds, distance_to_outline, distance_to_segment, size};
-use design::geometry::region::{Corners, Region, Ring, as_seen, seen};
+use design::geometry::region::{Corners, Region, Ring, as_seen};
 use design::geometry::similarity::Similarity;
 use design::pattern::grid::Grid;
 use design::sheet::topology::Topology;
@@ -183,17 +183,18 @@ impl EvenSheet {
     fn with_panels(mut self, openings: u32, limbs: bool) -> Self {
         let edge = TrimmedEdge::new(&self.drawing, &self.loops, &self.limits);
         self.panels = edge.panels(openings);
-        let missing =
-            limbs.then(|| missing(&self.drawing, &as_seen(self.opened(1.0), &self.drawing)));
-        for limb in missing.into_iter().flatten() {
+        let mut seen = as_seen(self.opened(1.0), &self.drawing);
+        for limb in limbs.then(|| missing(&self.drawing, &seen)).into_iter().flatten() {
             let limb = limb.offset(LIMB, Corners::Round).common(&self.drawing);
             let Some(panels) = edge.with_limb(&self.panels, &limb, openings) else { continue };
             let without = std::mem::replace(&mut self.panels, panels);
-            if !self.fits(&self.opened(0.0).concat()) {
+            if self.fits(&self.opened(0.0).concat()) {
+                seen = as_seen(self.opened(1.0), &self.drawing);
+            } else {
                 self.panels = without;
             }
         }
-        self.seen = seen(self.opened(1.0), &self.drawing);
+        self.seen = seen.likeness(&self.drawing);
         self
     }
 

@@ -221,13 +221,14 @@ fn largest(target: &Region, limits: Limits, search: Search) -> Option<EvenSheet>
         EvenSheet::new(target, &SIZES.map(|factor| factor * part * size), limits, search)
     };
     let mut best = LARGEST.into_iter().find_map(|part| with(part, search))?;
-    // With limbs a flat sheet is larger: they do not become smaller when it closes.
+    // Limbs do not become smaller when the sheet closes: it has to be smaller with them.
     for part in LARGEST {
         if lost(&best).is_empty() {
             break;
         }
-        let limbs = Search { limbs: true, ..search };
-        best = with(part, limbs).filter(|it| it.seen > best.seen).unwrap_or(best);
+        best = with(part, Search { limbs: true, ..search })
+            .filter(|it| it.seen > best.seen)
+            .unwrap_or(best);
     }
     Some(best)
 }

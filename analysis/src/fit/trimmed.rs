@@ -33,7 +33,8 @@ const MISSED: f64 = 0.01;
 const VOID: f64 = 1.5;
 /// Area of a hole that is a rounding error.
 const FILLED: f64 = 1e-4;
-/// Distance from an edge of a square up to which a point is on it.
+/// Distance from an edge of a square up to which a point is on it: offsets leave corners off it by up
+/// to 2e-6.
 pub(super) const ON_EDGE: f64 = 1e-5;
 /// How far a window is outside the drawing at most: the border of a drawing may be an edge of squares.
 const ON_BORDER: f64 = 0.03;
@@ -203,22 +204,21 @@ impl<'a> TrimmedEdge<'a> {
             let motion = self.limits.opening.motion(*cell);
             limb.map(|at| point(motion.back(complex(at))))
         };
-        let touches =
-            |(cell, panel): &(&GridIndex, &Region)| seen_by(cell).common(panel).area() > 0.0;
-        let roots: Vec<GridIndex> = panels.iter().filter(touches).map(|(cell, _)| *cell).collect();
+        let at_edge = self.drawing.keys().copied();
+        let touches = |cell: &GridIndex| seen_by(cell).common(&panels[cell]).area() > 0.0;
+        let roots: Vec<GridIndex> = at_edge.filter(touches).collect();
         let mut bare = panels.clone();
         bare.extend(roots.iter().map(|cell| (*cell, self.square(*cell))));
-        let of_bare = |cell| bare[&cell].clone();
         let limbs = roots.iter().map(|cell| {
             let limb = panels[cell].union(&seen_by(cell));
-            (*cell, self.with_part(*cell, &bare[cell], &limb, openings, of_bare))
+            (*cell, self.with_part(*cell, &bare[cell], &limb, openings, |it| bare[&it].clone()))
         });
         let more = |(cell, larger): &(GridIndex, Region)| larger.area() - bare[cell].area();
         let limbs = limbs.filter(|it| more(it) > 0.5 * limb.area());
         let (of, larger) = limbs.max_by(|one, other| more(one).total_cmp(&more(other)))?;
         bare.insert(of, larger);
         for cell in roots.into_iter().filter(|cell| *cell != of) {
-            let of_other = |other| bare[&other].clone();
+            let of_other = |it| bare[&it].clone();
             let panel = self.with_part(cell, &bare[&cell], &panels[&cell], openings, of_other);
             bare.insert(cell, panel);
         }
@@ -240,8 +240,7 @@ impl<'a> TrimmedEdge<'a> {
         let wide = panel.union(&whole.opened(0.5 * self.limits.width).common(&whole));
         let larger = with_most_of(wide, panel).joined(HAIR);
         // A hole that another panel passes through cannot be filled.
-        let holes = larger.filled().minus(&larger);
-        let is_passed = holes.common(&taken).area() > FILLED;
+        let is_passed = larger.filled().minus(&larger).common(&taken).area() > FILLED;
         let larger = if is_passed { panel.joined(HAIR) } else { larger }.filled();
         // Cuts run along the edges of the squares.
         let larger = larger.simplified(TOLERANCE, |at| is_on_edge(cell, at));
@@ -275,8 +274,7 @@ impl<'a> TrimmedEdge<'a> {
         let hinges = self.hinges_of(cell);
         let sectors = hinges.map(|pair| sector(cell, hinge(*pair), self.limits)).collect();
         let windows = Region::even_odd(sectors).common(&square);
-        let drawing = self.drawing.get(&cell);
-        drawing.map_or(square.clone(), |drawing| square.common(drawing).union(&windows))
+        square.common(&self.drawing[&cell]).union(&windows)
     }
 
     /// The parts of every panel: missing squares, row by row, in the neighbour that has the most of

@@ -127,6 +127,11 @@ impl Region {
         f64::max(width, height)
     }
 
+    /// The area in common with another region over the area of both.
+    pub fn likeness(&self, other: &Self) -> f64 {
+        self.common(other).area() / self.union(other).area()
+    }
+
     /// Whether the region contains a point; the border belongs to one of its sides.
     pub fn contains(&self, point: Point) -> bool {
         self.contours().filter(|contour| polygon::contains(contour, point)).count() % 2 == 1
@@ -152,8 +157,7 @@ impl Region {
 /// Intersection over union of what one sees of opened panels and a drawing with its holes: gaps up
 /// to 8 % of the longer side of the drawing, or to the width of a panel, are closed.
 pub fn seen(panels: Vec<Ring>, drawing: &Region) -> f64 {
-    let closed = as_seen(panels, drawing);
-    closed.common(drawing).area() / closed.union(drawing).area()
+    as_seen(panels, drawing).likeness(drawing)
 }
 
 /// What one sees of opened panels: without the gaps between them.

@@ -14,15 +14,15 @@ use support::{
 /// Check a material before windows are solved with it
 ///
 /// Prints the law as the window solver reads it, thickness against ligament width, buckling against
-/// yield, and the openings at which ligaments tear. Exits with 1 if a verdict is an error. Example: kirigami material check
-/// configs/materials/pet-0.5mm.toml configs/scenes/pet-7x7.toml
+/// yield, and the openings at which ligaments tear. Exits with 1 if a verdict is an error. Example:
+/// kirigami material check configs/materials/pet-0.5mm.toml configs/scenes/pet-7x7.toml
 #[derive(Args)]
 pub(crate) struct CheckCommand {
     /// Material (TOML); see configs/materials
     #[arg(value_name = "MATERIAL")]
     material: PathBuf,
-    /// Scene (TOML), or the folder of a run, whose ligament widths are intended; its own
-    /// material is not read
+    /// Scene (TOML), or the folder of a run, whose ligament widths are intended; its own material is
+    /// not read
     #[arg(value_name = "SCENE")]
     scene: Option<PathBuf>,
     /// Print JSON instead of text

@@ -18,7 +18,7 @@ use design::{
     sheet::cut_sheet::PanelPoint,
 };
 use hinge::Regime;
-use scene::{FRICTION, Posture};
+use scene::{FRICTION, ON_EDGE, Posture};
 use support::Joined;
 use support::severity::Severity::{Error, Note, Warning};
 
@@ -94,7 +94,7 @@ pub(super) const RULES: [Rule; 14] = [
             let outside = attachments.filter(|attachment| {
                 let panel = &panels[attachment.panel];
                 matches!(attachment.point, PanelPoint::Fixed(_))
-                    && distance_to_polygon(panel.reference, &panel.boundary) > 1e-6
+                    && distance_to_polygon(panel.reference, &panel.boundary) > ON_EDGE
             });
             let outside: Vec<String> = outside.map(|attachment| attachment.name).collect();
             (!outside.is_empty()).then(|| {
