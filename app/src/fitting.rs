@@ -3,7 +3,7 @@
 use crate::progress::announce;
 use analysis::fit::{
     fasteners::Fastening,
-    scene::{FittedScene, fitted},
+    scene::{FittedScene, WITHOUT_LIMB, fitted},
 };
 use anyhow::{Result, ensure};
 use hinge::Regime;
@@ -35,13 +35,19 @@ pub fn fit_to_target(
 
 /// What a person may expect of the sheet of a material of some thickness (mm).
 pub fn expected(fit: &FittedScene, thickness: f64) -> String {
-    let FittedScene { panels, side, smallest, opening, seen, lost, kept_by, held, .. } = fit;
+    let FittedScene { panels, side, smallest, opening, seen, lost, kept_by, held, reach, .. } = fit;
     let [opening, seen] = [opening.to_degrees(), 100.0 * seen];
     let mut lines = vec![format!(
         "{panels} panels of {side:.0} mm, opened by {opening:.0} deg, show {seen:.1} % of the target (common area over the area of both, gaps \
          between panels closed)"
     )];
     lines.push(held.as_ref().map_or("no equilibrium is found with fasteners".to_owned(), fastened));
+    if *reach > WITHOUT_LIMB {
+        lines.push(format!(
+            "a part of the target is too narrow for two panels: one panel has it and reaches {:.0} mm from its hinges, which alone hold it",
+            reach * side
+        ));
+    }
     let two = 2.0 * side;
     lines.extend(lost.iter().map(|part| {
         let (width, place) = (part.width * side, in_words(part.place));

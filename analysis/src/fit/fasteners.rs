@@ -23,7 +23,7 @@ const EVEN: f64 = 0.002;
 const MARGIN: f64 = 1.5;
 /// The middle of a cell, where a panel is fastened, and its least distance from an edge of the panel,
 /// in sides.
-const MIDDLE: [f64; 2] = [0.5; 2];
+pub(super) const MIDDLE: [f64; 2] = [0.5; 2];
 const ROOM: f64 = 0.15;
 /// Diameters of the holes for screws of 4, 3 and 2 mm (mm).
 pub(super) const HOLES: [f64; 3] = [4.2, 3.2, 2.2];

@@ -3,12 +3,12 @@
 
 use crate::fit::even_pattern::Opening;
 use crate::fit::even_sheet::{EvenSheet, QUICK, Search, THOROUGH, growth};
-use crate::fit::fasteners::{AT_MOST, Candidates, FIRST, Fastening, HOLES};
+use crate::fit::fasteners::{AT_MOST, Candidates, FIRST, Fastening, HOLES, MIDDLE};
 use crate::fit::lost::{Lost, kept_by, lost};
 use crate::fit::opening::{free_axial_opening, safe_opening};
-use crate::fit::trimmed::{Limits, TOLERANCE};
+use crate::fit::trimmed::{Limits, REACH, TOLERANCE};
 use design::geometry::plane::{complex, point};
-use design::geometry::polygon::{bounds, size};
+use design::geometry::polygon::{bounds, distance, size};
 use design::geometry::region::{Region, Ring};
 use design::geometry::similarity::Similarity;
 use design::pattern::grid::Grid;
@@ -19,7 +19,7 @@ use scene::{
     At, CellsConfig, Level, Posture, PostureConfig, Scene, SceneConfig, StartConfig, SupportConfig,
     SupportKind, rounded, short,
 };
-use std::f64::consts::FRAC_PI_2;
+use std::f64::consts::{FRAC_PI_2, SQRT_2};
 use support::{Fault, Point, fault, refuse};
 
 /// The largest opening that is planned (rad): 60 degrees.
@@ -39,6 +39,8 @@ const GAP: f64 = 0.05;
 /// none of them fits.
 const SIZES: [f64; 6] = [1.04, 1.0, 0.97, 0.94, 0.91, 0.88];
 const LARGEST: [f64; 3] = [1.0, 0.82, 0.68];
+/// How far a panel without a limb reaches from its middle at most, in its sides.
+pub const WITHOUT_LIMB: f64 = SQRT_2 * REACH;
 /// Steps of a search: an even pattern needs none (docs/TRIED.md).
 const STEPS: usize = 0;
 
@@ -56,6 +58,8 @@ pub struct FittedScene {
     pub opening: f64,
     /// Intersection over union of what one sees of the opened panels and the target.
     pub seen: f64,
+    /// How far the corners of a panel that is trimmed are from its middle at most (sides).
+    pub reach: f64,
     /// How its fasteners hold it; `None` if no equilibrium is found.
     pub held: Option<Fastening>,
     /// The parts of the target that are not seen.
@@ -109,9 +113,11 @@ fn fastened(scene: &Scene, sheet: &EvenSheet, side: f64) -> Result<FittedScene, 
             "no panel of {side:.0} mm has room for a fastener: use smaller panels or a larger sheet"
         );
     }
+    let corners = topology.trims.iter().flatten().flat_map(|trim| trim.iter());
     Ok(FittedScene {
         config,
         held,
+        reach: corners.map(|at| distance(*at, MIDDLE)).fold(0.0, f64::max),
         lost: lost(sheet),
         kept_by: None,
         panels: topology.panel_count(),

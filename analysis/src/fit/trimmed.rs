@@ -18,7 +18,7 @@ use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_2};
 /// Rows of missing squares that become parts of panels.
 pub(super) const RINGS: usize = 2;
 /// How far the part of the drawing that counts for a square is from its edges.
-const REACH: f64 = RINGS as f64 + 0.5;
+pub(super) const REACH: f64 = RINGS as f64 + 0.5;
 /// The smallest area of the drawing for which a missing square becomes a part.
 const LEAST_PART: f64 = 0.02;
 /// By how much the edges of a panel are simplified.
@@ -69,11 +69,14 @@ pub(super) fn loops(
 ) -> BTreeSet<GridIndex> {
     let [from, to] = bounds.map(|corner| limits.opening.square_at(corner));
     let all = (from[1] - 1..=to[1]).flat_map(|j| (from[0] - 1..=to[0]).map(move |i| [i, j]));
-    let counts = |pair: &HingedSquares| {
-        let corner = hinge(*pair);
-        pair.iter().all(|cell| window(*cell, corner, limits).into_iter().all(inside))
-    };
-    largest_joined(all.filter(|at| pairs(*at).iter().all(counts)).collect())
+    largest_joined(all.filter(|at| counts(*at, limits, inside)).collect())
+}
+
+/// Whether the hinges of a loop count.
+pub(super) fn counts(at: GridIndex, limits: &Limits, inside: &impl Fn([f64; 2]) -> bool) -> bool {
+    let is_inside =
+        |pair: HingedSquares, cell| window(cell, hinge(pair), limits).into_iter().all(inside);
+    pairs(at).into_iter().all(|pair| pair.into_iter().all(|cell| is_inside(pair, cell)))
 }
 
 /// The largest set of some loops that is joined by pairs of squares.
