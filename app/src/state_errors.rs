@@ -9,19 +9,19 @@ use train::{ErrorInterval, Parity, inside, spot_check};
 
 /// Prints the errors of weights at the states of a database that lie inside the training domain.
 pub fn print_errors(surrogate: &Surrogate, database: &Database) {
-    let (manifest, rows) = (database.manifest(), database.rows());
+    let (manifest, rays) = (database.manifest(), database.rays());
     println!(
         "weights of tier {}, tested on tier {}, {} rays",
         surrogate.card().tier,
         manifest.tier,
         manifest.rays
     );
-    let inside = inside(surrogate, rows);
-    println!("{} of {} states inside the training domain\n", inside.len(), rows.len());
+    let inside = Parity::new(surrogate, &inside(surrogate, rays)).states;
+    println!("{} of {} states inside the training domain\n", inside.len(), manifest.rows);
     if !inside.is_empty() {
-        println!("{}", distribution(&Parity::new(surrogate, &inside).states));
+        println!("{}", distribution(&inside));
     }
-    match ErrorInterval::of(surrogate, rows) {
+    match ErrorInterval::of(surrogate, rays) {
         Some([w, forces]) => println!("all states: W {w}; forces {forces}"),
         None => println!("all states: too few for an interval"),
     }
@@ -60,7 +60,7 @@ pub fn record(
     recorded: impl Fn(Surrogate, SpotCheck) -> Surrogate,
     weights: &Path,
 ) -> Result<()> {
-    let check = spot_check(&surrogate, database.rows(), &database.manifest().tier.to_string());
+    let check = spot_check(&surrogate, database.rays(), &database.manifest().tier.to_string());
     recorded(surrogate, check).save(weights)?;
     println!("recorded on the card of {}", weights.display());
     Ok(())

@@ -1,11 +1,11 @@
 //! The multiplicative bridge between two fidelities; see [`crate::fidelity_correction`].
 
 use crate::compare::ComparedRay;
-use crate::rows::Row;
 use faer::Side;
 use faer::linalg::solvers::{Llt, Solve};
 use faer::prelude::*;
-use hinge::HingeSample;
+use fe_driver::SolvedRay;
+use hinge::{HingeDesign, HingeSample};
 use std::array::from_fn;
 use std::f64::consts::FRAC_PI_2;
 use support::vectors::dot;
@@ -41,6 +41,9 @@ const RIDGE: f64 = 1.0;
 /// Coefficients of the [`TERMS`].
 type Coefficients = [f64; TERMS.len()];
 
+/// Hinge and state of a sample.
+type SolvedState<'a> = (&'a HingeDesign, &'a HingeSample);
+
 /// The fitted correction from one mesh to another.
 #[derive(Clone, Debug)]
 pub(crate) struct Bridge {
@@ -52,22 +55,26 @@ pub(crate) struct Bridge {
 
 impl Bridge {
     /// Fits the correction from the mesh of the rays to the mesh of their references.
-    pub(crate) fn fit(rays: &[ComparedRay]) -> Self {
-        let pairs = rays.iter().flat_map(ComparedRay::pairs);
-        let pairs: Vec<_> = pairs.filter(|(row, _)| row.at_requested_tier()).collect();
+    pub(crate) fn fit<'a>(rays: &'a [ComparedRay]) -> Self {
+        let fitted = rays.iter().filter(|it| it.ray.at_requested_tier());
+        let of_ray = |it: &'a ComparedRay| {
+            it.pairs().map(|(sample, reference)| ((&it.ray.design, sample), reference))
+        };
+        let pairs: Vec<(SolvedState, &HingeSample)> = fitted.flat_map(of_ray).collect();
         let unfitted = Self {
-            ranges: ranges(pairs.iter().map(|(row, _)| *row)),
+            ranges: ranges(pairs.iter().map(|(state, _)| *state)),
             coefficients: Default::default(),
         };
         // A pair with an unknown value is omitted.
         let damage = |value: fn(&HingeSample) -> Option<f64>| {
-            let changes = pairs.iter().filter_map(|(row, reference)| {
-                let (terms, _) = unfitted.terms(row);
-                Some(Observation::new(terms, value(&row.sample)?, value(reference)?))
+            let changes = pairs.iter().filter_map(|(state, reference)| {
+                let (terms, _) = unfitted.terms(*state);
+                Some(Observation::new(terms, value(state.1)?, value(reference)?))
             });
             least_squares([(changes.collect(), 1.0)])
         };
-        let changes = pairs.iter().map(|(row, reference)| unfitted.energy_changes(row, reference));
+        let changes =
+            pairs.iter().map(|(state, reference)| unfitted.energy_changes(*state, reference));
         let changes: Vec<[Observation; 4]> = changes.collect();
         let quantity = |i: usize| {
             let weight = if i == 0 { 1.0 } else { FORCE_WEIGHT };
@@ -83,10 +90,10 @@ impl Bridge {
         }
     }
 
-    /// How the coefficients of q change W, F_a, F_s and M of a row.
-    fn energy_changes(&self, row: &Row, reference: &HingeSample) -> [Observation; 4] {
-        let (terms, slopes) = self.terms(row);
-        let x = &row.sample;
+    /// How the coefficients of q change W, F_a, F_s and M of a state.
+    fn energy_changes(&self, state: SolvedState, reference: &HingeSample) -> [Observation; 4] {
+        let (terms, slopes) = self.terms(state);
+        let (_, x) = state;
         let force = |i: usize, value: f64, reference: f64| {
             let by = |k: usize| terms[k] * value + x.w * slopes[k][i];
             Observation { by: from_fn(by), missing: reference - value, reference }
@@ -109,17 +116,16 @@ impl Bridge {
         self
     }
 
-    /// The sample of a row, corrected to the finer mesh. Quantities that no surrogate is trained on
-    /// are unchanged, including the work of the reaction forces and the energy residual. A row that
+    /// A sample of a ray, corrected to the finer mesh. Quantities that no surrogate is trained on
+    /// are unchanged, including the work of the reaction forces and the energy residual. A ray that
     /// was solved on a finer tier than the requested one is also unchanged.
-    pub(crate) fn corrected(&self, row: &Row) -> HingeSample {
-        if !row.at_requested_tier() {
-            return row.sample;
+    pub(crate) fn corrected(&self, ray: &SolvedRay, x: &HingeSample) -> HingeSample {
+        if !ray.at_requested_tier() {
+            return *x;
         }
-        let (terms, slopes) = self.terms(row);
+        let (terms, slopes) = self.terms((&ray.design, x));
         let [energy, damage, peak] = self.coefficients.map(|c| 1.0 + dot(&c, &terms));
         let slope = |i: usize| dot(&self.coefficients[0], &slopes.map(|term| term[i]));
-        let x = &row.sample;
         HingeSample {
             w: energy * x.w,
             f_a: energy * x.f_a + x.w * slope(0),
@@ -131,10 +137,11 @@ impl Bridge {
         }
     }
 
-    /// The terms at a row, and their gradients with respect to (a, s, theta).
-    fn terms(&self, row: &Row) -> (Coefficients, [[f64; 3]; TERMS.len()]) {
-        let at = coordinates(row);
-        let units = [1.0, 1.0, row.design.w_lig, row.design.w_lig, 1.0];
+    /// The terms at a state, and their gradients with respect to (a, s, theta).
+    fn terms(&self, state: SolvedState) -> (Coefficients, [[f64; 3]; TERMS.len()]) {
+        let at = coordinates(state);
+        let w_lig = state.0.w_lig;
+        let units = [1.0, 1.0, w_lig, w_lig, 1.0];
         let (mut x, mut by) = ([1.0; 6], [[0.0; 3]; 6]);
         for (i, [middle, half]) in self.ranges.into_iter().enumerate() {
             let scaled = (at[i] - middle) / half;
@@ -152,19 +159,18 @@ impl Bridge {
 }
 
 /// w_lig (mm), alpha - pi/2 (rad), eta_a, eta_s, theta (rad).
-fn coordinates(row: &Row) -> [f64; 5] {
-    let [eta_a, eta_s] = row.eta();
-    let design = &row.design;
-    [design.w_lig, design.alpha - FRAC_PI_2, eta_a, eta_s, row.sample.theta]
+fn coordinates((design, sample): SolvedState) -> [f64; 5] {
+    let [eta_a, eta_s] = sample.deformation().eta(design.w_lig);
+    [design.w_lig, design.alpha - FRAC_PI_2, eta_a, eta_s, sample.theta]
 }
 
 /// Middle and half of the range of each coordinate. The middle is 0 except for the width, so
 /// the mirror image has the opposite alpha and eta_s. A constant coordinate is not scaled.
-fn ranges<'a>(rows: impl Iterator<Item = &'a Row>) -> [[f64; 2]; 5] {
+fn ranges<'a>(states: impl Iterator<Item = SolvedState<'a>>) -> [[f64; 2]; 5] {
     let mut minimum = [f64::INFINITY; 5];
     let mut maximum = [f64::NEG_INFINITY; 5];
-    for row in rows {
-        for (i, value) in coordinates(row).into_iter().enumerate() {
+    for state in states {
+        for (i, value) in coordinates(state).into_iter().enumerate() {
             minimum[i] = minimum[i].min(value);
             maximum[i] = maximum[i].max(value);
         }

@@ -6,7 +6,8 @@
 //! is interpolated linearly in lambda.
 
 use crate::database::Database;
-use crate::rows::{Fidelity, RayKey, Row, ray_key};
+use crate::rays::{RayKey, ray_key};
+use fe_driver::{Fidelity, SolvedRay};
 use hinge::HingeSample;
 use std::array::from_fn;
 use std::collections::BTreeMap;
@@ -17,25 +18,24 @@ pub const COMPARED: [&str; 6] = ["W", "F_a", "F_s", "M_theta", "D", "D_peak"];
 /// One ray that both databases contain.
 #[derive(Clone, Debug)]
 pub struct ComparedRay<'a> {
-    /// The rows of the compared database, in order of lambda, up to the last lambda of the
-    /// reference; not empty.
-    pub rows: &'a [Row],
-    /// The sample of the reference database at each of these rows.
+    /// The ray in the compared database.
+    pub ray: &'a SolvedRay,
+    /// The sample of the reference database at each of its first samples, up to the last lambda
+    /// there; not empty.
     pub references: Vec<HingeSample>,
-    /// CPU time of the ray (s) in the compared database and in the reference database.
-    pub cpu_s: [f64; 2],
+    /// CPU time of the ray (s) in the reference database.
+    pub reference_cpu_s: f64,
 }
 
 impl<'a> ComparedRay<'a> {
-    /// Each row with its reference sample.
-    pub fn pairs(&self) -> impl Iterator<Item = (&'a Row, &HingeSample)> {
-        std::iter::zip(self.rows, &self.references)
+    /// Each sample with its reference.
+    pub fn pairs(&self) -> impl Iterator<Item = (&'a HingeSample, &HingeSample)> {
+        std::iter::zip(&self.ray.samples, &self.references)
     }
 
-    /// The state of each row with its reference.
+    /// The state of each sample with its reference.
     pub fn states(&self) -> Vec<ComparedState> {
-        let states = self.pairs();
-        states.map(|(row, reference)| ComparedState::new(&row.sample, reference)).collect()
+        self.pairs().map(|(sample, reference)| ComparedState::new(sample, reference)).collect()
     }
 }
 
@@ -86,13 +86,13 @@ fn compare_meshes<'a>(
     reference: (&'a Database, Fidelity),
 ) -> Vec<ComparedRay<'a>> {
     let references = rays(reference);
-    let compared = |(key, ray): (_, &'a [Row])| {
-        let reference = *references.get(&key)?;
-        let samples: Vec<_> = reference.iter().map(|row| row.sample).collect();
-        let known = ray.iter().map_while(|row| HingeSample::at(&samples, row.sample.lambda));
+    let compared = |(key, ray): (_, &'a SolvedRay)| {
+        let reference = references.get(&key)?;
+        let known =
+            ray.samples.iter().map_while(|it| HingeSample::at(&reference.samples, it.lambda));
         let references: Vec<HingeSample> = known.collect();
-        let rows = &ray[..references.len()];
-        Some(ComparedRay { cpu_s: [rows.first()?.cpu_s, reference[0].cpu_s], rows, references })
+        let reference_cpu_s = reference.cpu_s;
+        (!references.is_empty()).then_some(ComparedRay { ray, references, reference_cpu_s })
     };
     rays(candidate).into_iter().filter_map(compared).collect()
 }
@@ -127,42 +127,41 @@ fn rms<'a>(
     from_fn(|i| (squares[i] / f64::max(counts[i], 1.0)).sqrt())
 }
 
-/// The rays on a mesh, by ray and hash of the material law. The last row of a job identifies its
-/// ray, which may bend.
-fn rays((database, tier): (&Database, Fidelity)) -> BTreeMap<(RayKey, &str), &[Row]> {
-    let rays = database.rays().into_iter().filter(|ray| ray[0].tier == tier);
-    let keyed = rays.map(|ray| {
-        let last = &ray[ray.len() - 1];
-        ((ray_key(last), last.material_hash.as_str()), ray)
-    });
-    keyed.collect()
+/// The rays on a mesh, by ray and hash of the material law.
+fn rays((database, tier): (&Database, Fidelity)) -> BTreeMap<(Option<RayKey>, &str), &SolvedRay> {
+    let rays = database.on_tier(tier);
+    rays.map(|ray| ((ray_key(ray), ray.material_hash.as_str()), ray)).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rows::tests::{finer, rows};
+    use crate::rays::tests::{finer, rays};
     use crate::split::SplitPlan;
+    use testkit::changed;
 
-    fn database(rows: Vec<Row>) -> Database {
-        Database::collect(rows, &SplitPlan::default()).unwrap()
+    fn database(rays: Vec<SolvedRay>) -> Database {
+        Database::collect(rays, &SplitPlan::default()).unwrap()
     }
 
     #[test]
     fn rays_scaled_by_three_percent_differ_by_three_percent() {
-        let stiff = rows(6).into_iter().map(|row| {
-            let x = row.sample;
-            let (w, w_work) = (1.03 * x.w, 1.03 * x.w_work);
-            let (f_a, f_s, m_theta) = (1.03 * x.f_a, 1.03 * x.f_s, 1.03 * x.m_theta);
-            let (d, d_peak) = (1.03 * x.d, x.d_peak.map(|peak| 1.03 * peak));
-            let sample = HingeSample { w, w_work, f_a, f_s, m_theta, d, d_peak, ..x };
-            Row { sample, job: format!("stiff-{}", row.job), ..row }
+        let stiff = |x: &mut HingeSample| {
+            for value in [&mut x.w, &mut x.w_work, &mut x.f_a, &mut x.f_s, &mut x.m_theta, &mut x.d]
+            {
+                *value *= 1.03;
+            }
+            x.d_peak = x.d_peak.map(|peak| 1.03 * peak);
+        };
+        let stiff = changed(rays(6), |ray| {
+            ray.job = format!("stiff-{}", ray.job);
+            ray.samples.iter_mut().for_each(stiff);
         });
-        let (candidate, reference) = (database(stiff.collect()), database(rows(6)));
-        let rays = compare(&candidate, &reference);
-        assert_eq!(rays.len(), 6);
-        assert!(rays.iter().all(|ray| ray.rows[ray.rows.len() - 1].sample.lambda == 1.0));
-        let states: Vec<_> = rays.iter().flat_map(ComparedRay::states).collect();
+        let (candidate, reference) = (database(stiff), database(rays(6)));
+        let compared = compare(&candidate, &reference);
+        assert_eq!(compared.len(), 6);
+        assert!(compared.iter().all(|it| it.references[9].lambda == 1.0));
+        let states: Vec<_> = compared.iter().flat_map(ComparedRay::states).collect();
         for difference in relative_rms(&states, [0.0; 6]) {
             assert!((difference - 0.03).abs() < 1e-12, "{difference}");
         }
@@ -171,20 +170,17 @@ mod tests {
             assert!((difference - 0.015).abs() < 1e-12, "{difference}");
         }
         // Only rays that both databases contain are compared.
-        let fewer = database(rows(4));
+        let fewer = database(rays(4));
         assert_eq!(compare(&candidate, &fewer).len(), 4);
     }
 
     #[test]
     fn rays_of_other_materials_are_not_compared() {
         let of = |law: &str| {
-            let rows = rows(6).into_iter();
-            let named = rows.map(|row| Row {
-                job: format!("{law}-{}", row.job),
-                material_hash: law.into(),
-                ..row
-            });
-            database(named.collect())
+            database(changed(rays(6), |ray| {
+                ray.job = format!("{law}-{}", ray.job);
+                ray.material_hash = law.into();
+            }))
         };
         let [film, steel] = ["f11f", "57ee1"].map(of);
         assert_eq!(compare(&film, &steel).len(), 0);
@@ -193,15 +189,14 @@ mod tests {
 
     #[test]
     fn the_rays_of_both_meshes_are_compared_with_the_finer_one() {
-        assert_eq!(database(rows(6)).on_both_meshes().len(), 0);
-        let mut fine = finer(rows(4));
-        fine.iter_mut().for_each(|row| row.cpu_s = 70.0);
-        let both = database([rows(6), fine].concat());
-        let rays = both.on_both_meshes();
-        assert_eq!(rays.len(), 4);
-        for ray in rays {
-            assert!(ray.rows.iter().all(|row| row.tier == Fidelity::default()));
-            assert_eq!((ray.rows.len(), ray.cpu_s), (10, [10.0, 70.0]));
+        assert_eq!(database(rays(6)).on_both_meshes().len(), 0);
+        let fine = changed(finer(rays(4)), |ray| ray.cpu_s = 70.0);
+        let both = database([rays(6), fine].concat());
+        let compared = both.on_both_meshes();
+        assert_eq!(compared.len(), 4);
+        for ComparedRay { ray, references, reference_cpu_s } in compared {
+            assert_eq!(ray.tier, Fidelity::default());
+            assert_eq!((references.len(), ray.cpu_s, reference_cpu_s), (10, 10.0, 70.0));
         }
     }
 }

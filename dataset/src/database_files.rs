@@ -5,13 +5,12 @@
 //! the two the next reader renames it.
 
 use crate::database::Database;
-use crate::digest::{Digest, by_job_and_lambda};
+use crate::digest::Digest;
 use crate::manifest::{FORMAT_VERSION, Manifest};
 use crate::parquet::{self, Hashing, ParquetTable};
-use crate::rows::Row;
-use crate::schema::DatasetError;
 use crate::split::SplitPlan;
 use crate::summary::Contents;
+use fe_driver::SolvedRay;
 use std::fmt::{self, Display};
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -21,15 +20,15 @@ use support::{Fault, ensure, fault, refuse, regular_file, sealed_json, unread, u
 impl Database {
     /// Reads `X.parquet` and its manifest `X.json`; an error if the hash of the file is not that in
     /// the manifest.
-    pub fn read(path: &Path) -> Result<Self, DatasetError> {
+    pub fn read(path: &Path) -> Result<Self, Fault> {
         let (manifest, parquet) = match finish(path)? {
             Some(finished) => finished,
             None => read_files(path)?,
         };
-        let rows =
+        let rays =
             parquet::decode(&parquet).map_err(|error| fault!("{}: {error}", path.display()))?;
-        match manifest.disagrees(&rows) {
-            None => Ok(Self { rows, parquet, manifest }),
+        match manifest.disagrees(&rays) {
+            None => Ok(Self { rays, parquet, manifest }),
             Some(what) => refuse!(
                 "{} and its manifest do not belong together: {what}; copy the two files again, or \
                  collect the campaign again",
@@ -41,7 +40,7 @@ impl Database {
     /// Writes `X.parquet` and its manifest `X.json`, each atomically.
     ///
     /// An existing file is an error unless `replace` is true.
-    pub fn write(&self, path: &Path, replace: bool) -> Result<(), DatasetError> {
+    pub fn write(&self, path: &Path, replace: bool) -> Result<(), Fault> {
         refuse_existing(path, replace)?;
         let mut file = Unnamed::next_to(path).map_err(unwritten(path))?;
         let written = file.file().write_all(&self.parquet);
@@ -51,23 +50,19 @@ impl Database {
 }
 
 /// Writes the manifest of a Parquet file, and gives both their names.
-pub(crate) fn publish(
-    parquet: Unnamed,
-    manifest: &Manifest,
-    path: &Path,
-) -> Result<(), DatasetError> {
+pub(crate) fn publish(parquet: Unnamed, manifest: &Manifest, path: &Path) -> Result<(), Fault> {
     let next = next_path(path);
     parquet.name(&next).map_err(unwritten(&next))?;
     let mut json = sealed_json::to_vec(manifest).map_err(no_manifest(path))?;
     json.push(b'\n');
     let place = manifest_path(path);
     whole_file::write(&place, &json).map_err(unwritten(&place))?;
-    Ok(whole_file::rename(&next, path).map_err(unwritten(path))?)
+    whole_file::rename(&next, path).map_err(unwritten(path))
 }
 
 /// The database whose Parquet file has not got its name yet, which it gets now if the folder can be
 /// written; `None` if there is none.
-fn finish(path: &Path) -> Result<Option<(Manifest, Vec<u8>)>, DatasetError> {
+fn finish(path: &Path) -> Result<Option<(Manifest, Vec<u8>)>, Fault> {
     let next = next_path(path);
     if !next.exists() {
         return Ok(None);
@@ -82,7 +77,7 @@ fn finish(path: &Path) -> Result<Option<(Manifest, Vec<u8>)>, DatasetError> {
 }
 
 /// The manifest and the bytes of the Parquet file, which has the hash in the manifest.
-fn read_files(path: &Path) -> Result<(Manifest, Vec<u8>), DatasetError> {
+fn read_files(path: &Path) -> Result<(Manifest, Vec<u8>), Fault> {
     let parquet = read_bytes(path)?;
     if let Some(what) = other_kind(&parquet) {
         refuse!(
@@ -103,7 +98,7 @@ fn read_files(path: &Path) -> Result<(Manifest, Vec<u8>), DatasetError> {
 }
 
 /// An error if `X.parquet` or its manifest exists, unless `replace` is true.
-pub(crate) fn refuse_existing(path: &Path, replace: bool) -> Result<(), DatasetError> {
+pub(crate) fn refuse_existing(path: &Path, replace: bool) -> Result<(), Fault> {
     let files = [path.to_owned(), manifest_path(path)];
     match files.into_iter().find(|path| !replace && path.exists()) {
         Some(path) => refuse!(
@@ -123,7 +118,7 @@ fn next_path(path: &Path) -> PathBuf {
     path.with_added_extension("next")
 }
 
-fn read_manifest(path: &Path) -> Result<Manifest, DatasetError> {
+fn read_manifest(path: &Path) -> Result<Manifest, Fault> {
     #[derive(serde::Deserialize)]
     struct Version {
         format_version: u64,
@@ -136,7 +131,7 @@ fn read_manifest(path: &Path) -> Result<Manifest, DatasetError> {
              {FORMAT_VERSION}: collect the campaign again, or use the program that wrote it",
         path.display()
     );
-    Ok(sealed_json::from_slice(&bytes).map_err(no_manifest(path))?)
+    sealed_json::from_slice(&bytes).map_err(no_manifest(path))
 }
 
 /// Maps the error of the manifest `path`, for use in `map_err`.
@@ -170,34 +165,34 @@ pub struct Collected {
 }
 
 impl Collected {
-    /// Writes `X.parquet` and its manifest `X.json` of rays, each the rows of one job. The jobs
-    /// must come in the order of their ids. The files are those that
+    /// Writes `X.parquet` and its manifest `X.json` of rays, which must come in the order of their
+    /// jobs. The files are those that
     /// [`Database::collect`](crate::Database::collect) and
     /// [`Database::write`](crate::Database::write) give, and appear only when they are complete.
     ///
     /// An existing file is an error unless `replace` is true.
-    pub fn write<E: From<DatasetError>>(
-        rays: impl IntoIterator<Item = Result<Vec<Row>, E>>,
+    pub fn write<E: From<Fault>>(
+        rays: impl IntoIterator<Item = Result<SolvedRay, E>>,
         plan: &SplitPlan,
         path: &Path,
         replace: bool,
     ) -> Result<Self, E> {
         refuse_existing(path, replace)?;
-        let mut file =
-            Unnamed::next_to(path).map_err(unwritten(path)).map_err(DatasetError::from)?;
-        let failed = |error: DatasetError| unwritten(path)(error).into();
+        let mut file = Unnamed::next_to(path).map_err(unwritten(path))?;
         let mut digest = Digest::default();
         let mut contents = Contents::default();
         let mut hashing = Hashing::new(file.file());
-        let mut table = ParquetTable::new(&mut hashing).map_err(failed)?;
+        let mut table = ParquetTable::new(&mut hashing).map_err(unwritten(path))?;
         for ray in rays {
-            let mut ray = digest.accepted(ray?);
-            ray.sort_by(by_job_and_lambda);
+            let ray = digest.accepted(ray?);
+            if ray.samples.is_empty() {
+                continue;
+            }
             digest.add(&ray)?;
             contents.add(&ray);
-            table.add(ray).map_err(failed)?;
+            table.add(ray).map_err(unwritten(path))?;
         }
-        table.finish().map_err(failed)?;
+        table.finish().map_err(unwritten(path))?;
         let manifest = digest.manifest(hashing.hash(), plan)?;
         publish(file, &manifest, path)?;
         Ok(Self { manifest, contents })
@@ -214,40 +209,41 @@ impl fmt::Display for Collected {
 mod tests {
     use super::*;
     use crate::database::Database;
-    use crate::rows::tests::rows;
+    use crate::rays::tests::{finer, rays};
 
     #[test]
-    fn rays_that_arrive_one_by_one_give_the_files_of_all_rows_together() {
+    fn rays_that_arrive_one_by_one_give_the_files_of_all_together() {
         let folder = tempfile::tempdir().unwrap();
         let [together, apart] = ["together", "apart"].map(|name| folder.path().join(name));
         let plan = SplitPlan::default();
-        let mut rows = rows(40);
-        rows[57].sample.w = -1.0;
-        let database = Database::collect(rows.clone(), &plan).unwrap();
+        let mut rays = [rays(40), finer(rays(4))].concat();
+        rays[5].samples[7].w = -1.0;
+        let database = Database::collect(rays.clone(), &plan).unwrap();
         database.write(&together.with_extension("parquet"), false).unwrap();
 
         let path = apart.with_extension("parquet");
-        let write = |rows: &[Row], replace| {
-            let rays = rows.chunks(10).map(|ray| {
-                let backwards = ray.iter().rev().cloned();
-                Ok::<_, DatasetError>(backwards.collect())
+        rays.sort_by(|left, right| left.job.cmp(&right.job));
+        let write = |rays: &[SolvedRay], replace| {
+            let backwards = rays.iter().cloned().map(|mut ray| {
+                ray.samples.reverse();
+                Ok::<_, Fault>(ray)
             });
-            Collected::write(rays, &plan, &path, replace)
+            Collected::write(backwards, &plan, &path, replace)
         };
-        let collected = write(&rows, false).unwrap();
+        let collected = write(&rays, false).unwrap();
         for extension in ["parquet", "json"] {
             let read = |path: &Path| std::fs::read(path.with_extension(extension)).unwrap();
             assert_eq!(read(&apart), read(&together), "{extension}");
         }
         assert_eq!(collected.to_string(), database.to_string());
 
-        let refusal = |rows: &[Row], replace| write(rows, replace).unwrap_err().to_string();
-        assert!(refusal(&rows, false).contains("already exists"));
+        let refusal = |rays: &[SolvedRay], replace| write(rays, replace).unwrap_err().to_string();
+        assert!(refusal(&rays, false).contains("already exists"));
         // A ray that is given twice, or no ray that can be used, leaves the old files.
-        let twice = [&rows[..20], &rows[10..]].concat();
+        let twice = [&rays[..2], &rays[1..]].concat();
         assert!(refusal(&twice, true).contains("occurs twice"));
         assert!(refusal(&[], true).starts_with("no rows: "));
-        assert_eq!(Database::read(&path).unwrap().rows(), database.rows());
+        assert_eq!(Database::read(&path).unwrap().rays(), database.rays());
         assert_eq!(folder.path().read_dir().unwrap().count(), 4);
     }
 }

@@ -1,27 +1,22 @@
-//! What the manifest and the summary need of the rows of a database, gathered ray by ray: the rows
-//! themselves need not be in memory at the same time.
+//! What the manifest and the summary need of the rays of a database, gathered one after the other:
+//! the rays themselves need not be in memory at the same time.
 
 use crate::manifest::{AcceptanceLimits, FORMAT_VERSION, FinerMesh, Manifest, Rejection};
-use crate::rows::{RayKey, Row, ray_key};
-use crate::schema::{COLUMNS, DatasetError};
+use crate::rays::{RayKey, ray_key};
+use crate::schema::COLUMNS;
 use crate::split::{Geometries, Split, SplitPlan};
-use hinge::{HingeConstants, HingeDeformation, HingeDesign, Regime, TrainingDomain};
-use std::cmp::{Ordering, Reverse};
+use fe_driver::SolvedRay;
+use hinge::{HingeConstants, HingeDeformation, HingeDesign, HingeSample, Regime, TrainingDomain};
+use std::cmp::Reverse;
 use std::collections::{BTreeMap, BTreeSet};
-use support::{Joined, fault, refuse};
+use support::{Fault, Joined, fault, refuse};
 
-/// The order of the rows of a database.
-pub(crate) fn by_job_and_lambda(left: &Row, right: &Row) -> Ordering {
-    let by_lambda = || left.sample.lambda.total_cmp(&right.sample.lambda);
-    left.job.cmp(&right.job).then_with(by_lambda)
-}
-
-/// What is known of the rows so far.
+/// What is known of the rays so far.
 #[derive(Default)]
 pub(crate) struct Digest {
     rejected: BTreeMap<Rejection, usize>,
-    /// Job and lambda of the last accepted row.
-    last: Option<(String, f64)>,
+    /// Job of the last ray.
+    last: Option<String>,
     rows: usize,
     meshes: Meshes,
     /// The different values of every column of text, in the order of [`TEXTS`].
@@ -29,59 +24,50 @@ pub(crate) struct Digest {
 }
 
 /// The columns of text whose values the manifest lists.
-const TEXTS: [fn(&Row) -> &String; 4] =
-    [|row| &row.material, |row| &row.material_hash, |row| &row.tools.gmsh, |row| &row.tools.ccx];
+const TEXTS: [fn(&SolvedRay) -> &String; 4] =
+    [|ray| &ray.material, |ray| &ray.material_hash, |ray| &ray.tools.gmsh, |ray| &ray.tools.ccx];
 
 impl Digest {
-    /// The rows within the acceptance limits; the others are counted.
-    pub(crate) fn accepted(&mut self, mut rows: Vec<Row>) -> Vec<Row> {
-        rows.retain(|row| match AcceptanceLimits::default().rejection(row) {
+    /// The ray with the samples within the acceptance limits, in the order of lambda; the others
+    /// are counted.
+    pub(crate) fn accepted(&mut self, mut ray: SolvedRay) -> SolvedRay {
+        let mut samples = std::mem::take(&mut ray.samples);
+        samples.retain(|sample| match AcceptanceLimits::default().rejection(&ray, sample) {
             Some(reason) => {
                 *self.rejected.entry(reason).or_default() += 1;
                 false
             }
             None => true,
         });
-        rows
+        samples.sort_by(|left, right| left.lambda.total_cmp(&right.lambda));
+        SolvedRay { samples, ..ray }
     }
 
-    /// Adds accepted rows of one job, in the order of lambda. The jobs must come in the order of
-    /// their ids.
-    pub(crate) fn add(&mut self, ray: &[Row]) -> Result<(), DatasetError> {
-        for row in ray {
-            self.refuse_duplicate(row)?;
-            for (values, text) in self.texts.iter_mut().zip(TEXTS) {
-                if !values.contains(text(row)) {
-                    values.insert(text(row).clone());
-                }
+    /// Adds an accepted ray, which has samples. The rays must come in the order of their jobs.
+    pub(crate) fn add(&mut self, ray: &SolvedRay) -> Result<(), Fault> {
+        let SolvedRay { job, samples, .. } = ray;
+        if self.last.as_ref().is_some_and(|last| last >= job) {
+            refuse!("job {job} occurs twice; was it collected twice?");
+        }
+        if let Some(pair) = samples.windows(2).find(|pair| pair[0].lambda == pair[1].lambda) {
+            refuse!("job {job}: lambda = {} occurs twice", pair[0].lambda);
+        }
+        for (values, text) in self.texts.iter_mut().zip(TEXTS) {
+            if !values.contains(text(ray)) {
+                values.insert(text(ray).clone());
             }
         }
-        self.rows += ray.len();
+        self.last = Some(job.clone());
+        self.rows += samples.len();
         self.meshes.add(ray)
     }
 
-    /// Rejects a row that does not come after the last one: one with the same job and lambda.
-    fn refuse_duplicate(&mut self, row: &Row) -> Result<(), DatasetError> {
-        let (job, lambda) = (&row.job, row.sample.lambda);
-        if let Some((last, before)) = &self.last
-            && last.cmp(job).then_with(|| before.total_cmp(&lambda)) != Ordering::Less
-        {
-            refuse!("job {job}: lambda = {lambda} occurs twice; was the job collected twice?");
-        }
-        self.last = Some((job.clone(), lambda));
-        Ok(())
-    }
-
-    /// The manifest of the rows, whose Parquet file has the given hash.
-    pub(crate) fn manifest(self, hash: String, plan: &SplitPlan) -> Result<Manifest, DatasetError> {
-        let no_rows = |rejected| DatasetError::from(fault!("no rows: {}", reasons(rejected)));
+    /// The manifest of the rays, whose Parquet file has the given hash.
+    pub(crate) fn manifest(self, hash: String, plan: &SplitPlan) -> Result<Manifest, Fault> {
+        let no_rows = || fault!("no rows: {}", reasons(&self.rejected));
         let bent_rays = self.meshes.bent_rays.unwrap_or_default();
-        let Some((rays, finer)) = self.meshes.sorted()? else {
-            return Err(no_rows(&self.rejected));
-        };
-        let Some(domain) = TrainingDomain::covering(rays.states()) else {
-            return Err(no_rows(&self.rejected));
-        };
+        let (rays, finer) = self.meshes.sorted()?.ok_or_else(no_rows)?;
+        let domain = TrainingDomain::covering(rays.states()).ok_or_else(no_rows)?;
         let mut hinge = rays.first.design.constants();
         if domain.holes.is_some() {
             hinge.fillet_ratio = HingeConstants::PAPER.fillet_ratio;
@@ -136,40 +122,33 @@ fn reasons(rejected: &BTreeMap<Rejection, usize>) -> String {
 // The meshes of a database: the mesh of its rays, and the finer mesh on which some of them were
 // solved too.
 //
-// All rows have one material, one kerf and one window radius, since a surrogate has no feature for
+// All rays have one material, one kerf and one window radius, since a surrogate has no feature for
 // them. The finer mesh is the one with fewer rays, or, of as many, with the longer solves.
 
-/// The rows of one mesh.
+/// The rays of one mesh.
 #[derive(Default)]
-pub(crate) struct MeshRows {
+pub(crate) struct MeshRays {
     /// The first of them.
-    pub first: Row,
-    keys: BTreeSet<RayKey>,
+    pub first: SolvedRay,
+    keys: BTreeSet<Option<RayKey>>,
     pub rays: usize,
     pub partial_rays: usize,
     pub cpu_s: f64,
     pub geometries: Geometries,
-    /// Designs, each with the number of successive rows that have it.
+    /// Design of every ray, and number of its samples.
     designs: Vec<(HingeDesign, usize)>,
     deformations: Vec<HingeDeformation>,
 }
 
-impl MeshRows {
-    fn add(&mut self, ray: &[Row]) {
-        for row in ray {
-            self.geometries.add(row);
-            match self.designs.last_mut() {
-                Some((design, count)) if *design == row.design => *count += 1,
-                _ => self.designs.push((row.design, 1)),
-            }
-            self.deformations.push(row.sample.deformation());
-        }
-        if let Some(last) = ray.last() {
-            self.keys.insert(ray_key(last));
-            self.rays += 1;
-            self.partial_rays += usize::from(last.failure.is_some());
-            self.cpu_s += last.cpu_s;
-        }
+impl MeshRays {
+    fn add(&mut self, ray: &SolvedRay) {
+        self.geometries.add(ray);
+        self.designs.push((ray.design, ray.samples.len()));
+        self.deformations.extend(ray.samples.iter().map(HingeSample::deformation));
+        self.keys.insert(ray_key(ray));
+        self.rays += 1;
+        self.partial_rays += usize::from(ray.failure.is_some());
+        self.cpu_s += ray.cpu_s;
     }
 
     /// CPU time of a ray (s).
@@ -177,7 +156,7 @@ impl MeshRows {
         self.cpu_s / self.rays as f64
     }
 
-    /// The design and the deformation of every row.
+    /// The design and the deformation of every sample.
     pub(crate) fn states(&self) -> impl Iterator<Item = (HingeDesign, HingeDeformation)> + Clone {
         let designs =
             (self.designs.iter()).flat_map(|(design, count)| std::iter::repeat_n(*design, *count));
@@ -187,57 +166,52 @@ impl MeshRows {
 
 /// Whether a ray bends like the free turn of a plate; `None` if it turns too little to tell, or if
 /// it is another path, on which theta does not grow in proportion. Both
-/// ends of its rows lie on one line in (lambda, eta_a / lambda), whose slope is the curvature times
+/// ends of its samples lie on one line in (lambda, eta_a / lambda), whose slope is the curvature times
 /// theta^2.
-fn bends(ray: &[Row]) -> Option<bool> {
+fn bends(ray: &SolvedRay) -> Option<bool> {
     const LEAST_TURN: f64 = 0.1; // rad
-    let (first, last) = (&ray.first()?.sample, &ray.last()?.sample);
+    let (first, last) = (ray.samples.first()?, ray.samples.last()?);
     let lambdas = last.lambda - first.lambda;
     let turn = last.theta / last.lambda;
     let off = first.theta - turn * first.lambda;
     if lambdas <= 0.0 || last.theta.abs() < LEAST_TURN || off.abs() > 1e-4 {
         return None;
     }
-    let slope = (last.a / last.lambda - first.a / first.lambda) / lambdas / ray[0].design.w_lig;
+    let slope = (last.a / last.lambda - first.a / first.lambda) / lambdas / ray.design.w_lig;
     let [_, of_free_turn] = Regime::Plate.free_opening();
     Some(slope / (turn * turn.abs()) > 0.5 * of_free_turn)
 }
 
-/// The rows of all meshes.
+/// The rays of all meshes.
 #[derive(Default)]
 pub(crate) struct Meshes {
-    meshes: Vec<MeshRows>,
+    meshes: Vec<MeshRays>,
     /// [`Manifest::bent_rays`](crate::Manifest::bent_rays), once a ray that turns was added.
     pub bent_rays: Option<bool>,
 }
 
 impl Meshes {
-    /// Adds accepted rows of one job.
-    pub(crate) fn add(&mut self, ray: &[Row]) -> Result<(), DatasetError> {
-        let Some(first) = ray.first() else {
-            return Ok(());
-        };
-        let known = self.meshes.iter().position(|mesh| mesh.first.tier == first.tier);
+    /// Adds an accepted ray.
+    pub(crate) fn add(&mut self, ray: &SolvedRay) -> Result<(), Fault> {
+        let known = self.meshes.iter().position(|mesh| mesh.first.tier == ray.tier);
         let place = known.unwrap_or_else(|| {
-            self.meshes.push(MeshRows { first: first.clone(), ..MeshRows::default() });
+            self.meshes.push(MeshRays { first: ray.clone(), ..MeshRays::default() });
             self.meshes.len() - 1
         });
-        for row in ray {
-            refuse_other(&self.meshes[0].first, row, &SHARED)?;
-            refuse_other(&self.meshes[place].first, row, &SHARED_ON_A_MESH)?;
-        }
+        refuse_other(&self.meshes[0].first, ray, &SHARED)?;
+        refuse_other(&self.meshes[place].first, ray, &SHARED_ON_A_MESH)?;
         if let Some(bent) = bends(ray)
             && bent != *self.bent_rays.get_or_insert(bent)
         {
             let shape = |bent| format!("of {} rays", if bent { "bent" } else { "straight" });
-            return Err(mixed("a", first, [!bent, bent].map(shape)));
+            return Err(mixed("a", ray, [!bent, bent].map(shape)));
         }
         self.meshes[place].add(ray);
         Ok(())
     }
 
     /// The mesh of the rays, and the finer one if there is one; `None` without rows.
-    pub(crate) fn sorted(self) -> Result<Option<(MeshRows, Option<MeshRows>)>, DatasetError> {
+    pub(crate) fn sorted(self) -> Result<Option<(MeshRays, Option<MeshRays>)>, Fault> {
         let mut meshes = self.meshes;
         meshes.sort_by(|x, y| x.cost().total_cmp(&y.cost()));
         meshes.sort_by_key(|mesh| Reverse(mesh.keys.len()));
@@ -246,49 +220,53 @@ impl Meshes {
             return Ok(None);
         };
         let finer = meshes.next();
-        let is_other = |mesh: &&MeshRows| {
+        let is_other = |mesh: &&MeshRays| {
             mesh.keys.is_disjoint(&rays.keys)
                 || (mesh.keys.len() == rays.keys.len() && mesh.cost() <= rays.cost())
         };
         let third = meshes.next();
         match third.as_ref().or(finer.as_ref().filter(is_other)) {
-            Some(MeshRows { first, .. }) => {
-                Err(mixed("tier", first, [&rays.first, first].map(|row| row.tier.to_string())))
+            Some(MeshRays { first, .. }) => {
+                Err(mixed("tier", first, [&rays.first, first].map(|ray| ray.tier.to_string())))
             }
             None => Ok(Some((rays, finer))),
         }
     }
 }
 
-/// A quantity of a row as text.
-type RowQuantity = (&'static str, fn(&Row) -> String);
+/// A quantity of a ray as text.
+type RayQuantity = (&'static str, fn(&SolvedRay) -> String);
 
-/// The quantities that all rows have in common.
-const SHARED: [RowQuantity; 4] = [
-    ("material", |row| row.material.clone()),
-    ("material_hash", |row| row.material_hash.clone()),
-    ("kerf", |row| format!("{} mm", row.design.kerf)),
-    ("r_win", |row| format!("{} mm", row.design.r_win)),
+/// The quantities that all rays have in common.
+const SHARED: [RayQuantity; 4] = [
+    ("material", |ray| ray.material.clone()),
+    ("material_hash", |ray| ray.material_hash.clone()),
+    ("kerf", |ray| format!("{} mm", ray.design.kerf)),
+    ("r_win", |ray| format!("{} mm", ray.design.r_win)),
 ];
 
-/// The quantities that all rows of one mesh have in common.
-const SHARED_ON_A_MESH: [RowQuantity; 2] =
-    [("settings_hash", |row| row.settings_hash.clone()), ("tier", |row| row.tier.to_string())];
+/// The quantities that all rays of one mesh have in common.
+const SHARED_ON_A_MESH: [RayQuantity; 2] =
+    [("settings_hash", |ray| ray.settings_hash.clone()), ("tier", |ray| ray.tier.to_string())];
 
-/// Rejects a row that differs from `first` in one of the quantities, which are not features of the
+/// Rejects a ray that differs from `first` in one of the quantities, which are not features of the
 /// surrogate.
-fn refuse_other(first: &Row, row: &Row, quantities: &[RowQuantity]) -> Result<(), DatasetError> {
-    let mut different = quantities.iter().filter(|(_, text)| text(first) != text(row));
+fn refuse_other(
+    first: &SolvedRay,
+    ray: &SolvedRay,
+    quantities: &[RayQuantity],
+) -> Result<(), Fault> {
+    let mut different = quantities.iter().filter(|(_, text)| text(first) != text(ray));
     match different.next() {
-        Some((column, text)) => Err(mixed(column, row, [first, row].map(text))),
+        Some((column, text)) => Err(mixed(column, ray, [first, ray].map(text))),
         None => Ok(()),
     }
 }
 
-fn mixed(column: &str, Row { job, .. }: &Row, [expected, found]: [String; 2]) -> DatasetError {
+fn mixed(column: &str, ray: &SolvedRay, [expected, found]: [String; 2]) -> Fault {
     fault!(
-        "job {job}: {column} = {found}, but other rows have {expected}; collect them in separate \
-         databases"
+        "job {}: {column} = {found}, but other rays have {expected}; collect them in separate \
+         databases",
+        ray.job
     )
-    .into()
 }

@@ -17,17 +17,16 @@
 use crate::bridge::{Bridge, TERMS};
 use crate::compare::{COMPARED, ComparedRay, ComparedState};
 use crate::database::Database;
-use crate::rows::{Fidelity, Row};
-use crate::schema::DatasetError;
+use fe_driver::{Fidelity, SolvedRay};
 use hinge::HingeSample;
-use support::refuse;
+use support::{Fault, refuse};
 
 impl Database {
     /// The rays, corrected to the finer mesh by those that were solved on it too, but for
     /// quantities that [`left_out`] leaves uncorrected; without a correction of W the tier remains.
-    /// The rows of the finer mesh are left out. Returns the validation too; `None`, and the
+    /// The rays of the finer mesh are left out. Returns the validation too; `None`, and the
     /// database as it is, if no ray was solved on a finer mesh.
-    pub fn corrected(self) -> Result<(Self, Option<LeftOut>), DatasetError> {
+    pub fn corrected(self) -> Result<(Self, Option<LeftOut>), Fault> {
         let Some(finer) = &self.manifest().finer else {
             return Ok((self, None));
         };
@@ -41,12 +40,12 @@ impl Database {
             from
         };
         let bridge = Bridge::fit(&rays).only(corrected);
-        let rows = self.on_tier(from).map(|row| Row {
-            sample: bridge.corrected(row),
-            tier,
-            ..row.clone()
-        });
-        Ok((self.with_rows(rows.collect())?, Some(checked)))
+        let corrected = |ray: &SolvedRay| {
+            let samples = ray.samples.iter().map(|sample| bridge.corrected(ray, sample)).collect();
+            SolvedRay { samples, tier, ..ray.clone() }
+        };
+        let rays = self.on_tier(from).map(corrected).collect();
+        Ok((self.with_rays(rays)?, Some(checked)))
     }
 }
 
@@ -81,7 +80,7 @@ impl LeftOut {
 /// Leave-one-out validation: each ray, corrected by a bridge fitted to the other rays only. It
 /// measures the error of the correction for rays that were not solved on both meshes. The choice of
 /// the quantities that are corrected is made on all rays.
-pub fn left_out(rays: &[ComparedRay]) -> Result<LeftOut, DatasetError> {
+pub fn left_out(rays: &[ComparedRay]) -> Result<LeftOut, Fault> {
     let (found, needed) = (rays.len(), TERMS.len() + 1);
     if found < needed {
         // Too few to fit every term when one ray is left out.
@@ -95,8 +94,8 @@ pub fn left_out(rays: &[ComparedRay]) -> Result<LeftOut, DatasetError> {
     let states = |corrected: [bool; 3]| -> Vec<Vec<ComparedState>> {
         let of_ray = |(ray, bridge): (&ComparedRay, &Bridge)| {
             let bridge = bridge.clone().only(corrected);
-            let state = |(row, reference): (&Row, &HingeSample)| {
-                ComparedState::new(&bridge.corrected(row), reference)
+            let state = |(sample, reference): (&HingeSample, &HingeSample)| {
+                ComparedState::new(&bridge.corrected(ray.ray, sample), reference)
             };
             ray.pairs().map(state).collect()
         };
@@ -126,36 +125,37 @@ fn errors(states: &[Vec<ComparedState>]) -> [f64; 3] {
 mod tests {
     use super::*;
     use crate::compare::{compare, relative_rms};
-    use crate::rows::tests::{finer, rows};
+    use crate::rays::samples;
+    use crate::rays::tests::{finer, rays};
     use crate::split::SplitPlan;
+    use testkit::changed;
 
     const RAYS: usize = 40;
 
     /// Number of the rays that are solved on the finer mesh too, where most of them are.
     const TWICE: usize = RAYS - 1;
 
-    fn database(rows: Vec<Row>) -> Database {
-        Database::collect(rows, &SplitPlan::default()).unwrap()
+    fn database(rays: Vec<SolvedRay>) -> Database {
+        Database::collect(rays, &SplitPlan::default()).unwrap()
     }
 
-    /// Rows of one mesh and of a finer one in one database.
-    fn on_both(coarse: Vec<Row>, fine: Vec<Row>) -> Database {
+    /// Rays of one mesh and of a finer one in one database.
+    fn on_both(coarse: Vec<SolvedRay>, fine: Vec<SolvedRay>) -> Database {
         database([coarse, finer(fine)].concat())
     }
 
-    /// The rows of the rays themselves, without the rows of the finer mesh.
-    fn of_rays(database: &Database) -> Vec<Row> {
+    /// The rays on the coarser mesh.
+    fn coarser(database: &Database) -> Vec<SolvedRay> {
         database.on_tier(Fidelity::default()).cloned().collect()
     }
 
-    /// The [`rows`] with the errors of a coarse mesh, by a known q.
-    fn coarse() -> Vec<Row> {
-        let rows = rows(RAYS).into_iter().map(|row| {
-            let x = row.sample;
-            let [eta_a, _] = row.eta();
+    /// The [`rays`] with the errors of a coarse mesh, by a known q.
+    fn coarse() -> Vec<SolvedRay> {
+        let coarse = |x: &HingeSample, w_lig: f64| {
+            let [eta_a, _] = x.deformation().eta(w_lig);
             let q = 0.03 + 0.02 * x.theta * x.theta - 0.5 * eta_a;
-            let slopes = [-0.5 / row.design.w_lig, 0.0, 0.04 * x.theta];
-            let sample = HingeSample {
+            let slopes = [-0.5 / w_lig, 0.0, 0.04 * x.theta];
+            HingeSample {
                 w: x.w * (1.0 + q),
                 w_work: x.w * (1.0 + q),
                 f_a: x.f_a * (1.0 + q) + x.w * slopes[0],
@@ -163,29 +163,31 @@ mod tests {
                 m_theta: x.m_theta * (1.0 + q) + x.w * slopes[2],
                 d: 1.1 * x.d,
                 d_peak: x.d_peak.map(|peak| 1.3 * peak),
-                ..x
-            };
-            Row { sample, ..row }
-        });
-        rows.collect()
+                ..*x
+            }
+        };
+        changed(rays(RAYS), |ray| {
+            let w_lig = ray.design.w_lig;
+            ray.samples.iter_mut().for_each(|sample| *sample = coarse(sample, w_lig));
+        })
     }
 
     /// The coarse rays, most of them without the error of their mesh too.
     fn twice() -> Database {
-        on_both(coarse(), rows(TWICE))
+        on_both(coarse(), rays(TWICE))
     }
 
     #[test]
     fn the_mesh_error_is_corrected_on_rays_that_were_solved_only_once() {
-        let fine = database(rows(RAYS));
+        let fine = database(rays(RAYS));
         let errors = |candidate: &Database| {
-            let rays = compare(candidate, &fine);
-            assert_eq!(rays.len(), RAYS);
-            let states: Vec<_> = rays.iter().flat_map(ComparedRay::states).collect();
+            let compared = compare(candidate, &fine);
+            assert_eq!(compared.len(), RAYS);
+            let states: Vec<_> = compared.iter().flat_map(ComparedRay::states).collect();
             relative_rms(&states, [0.0; 6])
         };
         let before = errors(&database(coarse()));
-        let mut half = on_both(coarse(), rows(RAYS / 2));
+        let mut half = on_both(coarse(), rays(RAYS / 2));
         // A split that no plan gives.
         half.manifest.split.training.pop_first();
         let split = half.manifest().split.clone();
@@ -211,7 +213,7 @@ mod tests {
         let once = database(coarse());
         let (same, checked) = once.clone().corrected().unwrap();
         assert!(checked.is_none());
-        assert_eq!(same.rows(), once.rows());
+        assert_eq!(same.rays(), once.rays());
         assert_eq!(same.manifest(), once.manifest());
     }
 
@@ -219,15 +221,15 @@ mod tests {
     fn corrected_forces_are_the_gradient_of_the_corrected_energy() {
         let twice = twice();
         let bridge = Bridge::fit(&twice.on_both_meshes());
-        let row = of_rays(&twice)[7].clone();
+        let ray = &coarser(&twice)[0];
+        let x = ray.samples[7];
         let moved = |[a, s, theta]: [f64; 3]| {
-            let x = row.sample;
-            // The solved energy, to first order about the row.
+            // The solved energy, to first order about the sample.
             let w = x.w + x.f_a * a + x.f_s * s + x.m_theta * theta;
             let sample = HingeSample { a: x.a + a, s: x.s + s, theta: x.theta + theta, w, ..x };
-            bridge.corrected(&Row { sample, ..row.clone() }).w
+            bridge.corrected(ray, &sample).w
         };
-        let found = bridge.corrected(&row);
+        let found = bridge.corrected(ray, &x);
         for (i, found) in [found.f_a, found.f_s, found.m_theta].into_iter().enumerate() {
             let step: [f64; 3] = std::array::from_fn(|j| if i == j { 1e-6 } else { 0.0 });
             let slope = (moved(step) - moved(step.map(|x| -x))) / 2e-6;
@@ -239,9 +241,9 @@ mod tests {
     fn mirror_images_have_the_same_correction() {
         let twice = twice();
         let bridge = Bridge::fit(&twice.on_both_meshes());
-        let row = &of_rays(&twice)[13];
-        let image = &crate::rows::with_mirrored(std::slice::from_ref(row))[1];
-        let (there, here) = (bridge.corrected(image).mirrored(), bridge.corrected(row));
+        let rays = crate::rays::with_mirrored(&coarser(&twice)[1..2]);
+        let [here, there] = [0, 1].map(|i| bridge.corrected(&rays[i], &rays[i].samples[3]));
+        let there = there.mirrored();
         for (x, y) in [(there.w, here.w), (there.f_s, here.f_s), (there.d, here.d)] {
             assert!((x - y).abs() < 1e-12 * y.abs().max(1.0), "{x} {y}");
         }
@@ -249,14 +251,12 @@ mod tests {
 
     #[test]
     fn a_left_out_ray_does_not_affect_its_own_correction() {
-        let mut spoilt = rows(TWICE);
-        for row in spoilt.iter_mut().filter(|row| row.job == "job-003") {
-            row.sample.w *= 10.0;
-        }
+        let mut spoilt = rays(TWICE);
+        spoilt[3].samples.iter_mut().for_each(|sample| sample.w *= 10.0);
         let twice = on_both(coarse(), spoilt);
         let rays = twice.on_both_meshes();
         let checked = left_out(&rays).unwrap().states;
-        let i = rays.iter().position(|ray| ray.rows[0].job == "job-003").unwrap();
+        let i = rays.iter().position(|it| it.ray.job == "job-003").unwrap();
         let [corrected, solved] = [&checked[i], &rays[i].states()].map(|states| states[9].value[0]);
         assert!((corrected / solved - 1.0).abs() < 0.1, "{corrected} {solved}");
     }
@@ -264,32 +264,33 @@ mod tests {
     #[test]
     fn a_quantity_that_is_not_improved_remains_uncorrected() {
         // Damage differs by as much in either direction, ray by ray.
-        let spoilt = coarse().into_iter().map(|mut row| {
-            let odd = row.job.ends_with(['1', '3', '5', '7', '9']);
-            row.sample.d *= if odd { 1.3 } else { 0.7 };
-            row
+        let spoilt = changed(coarse(), |ray| {
+            let odd = ray.job.ends_with(['1', '3', '5', '7', '9']);
+            let factor = if odd { 1.3 } else { 0.7 };
+            ray.samples.iter_mut().for_each(|sample| sample.d *= factor);
         });
-        let twice = on_both(spoilt.collect(), rows(TWICE));
+        let twice = on_both(spoilt, rays(TWICE));
         let (corrected, checked) = twice.clone().corrected().unwrap();
         assert_eq!(checked.unwrap().uncorrected(), ["D"]);
-        let coarse = of_rays(&twice);
-        assert_eq!(coarse.len(), corrected.rows().len());
-        let both = || std::iter::zip(&coarse, corrected.rows());
-        assert!(both().all(|(before, after)| before.sample.d == after.sample.d));
-        assert!(both().any(|(before, after)| before.sample.w != after.sample.w));
+        let coarse = coarser(&twice);
+        assert_eq!(coarse.len(), corrected.rays().len());
+        let both = || std::iter::zip(samples(&coarse), samples(corrected.rays()));
+        assert!(both().all(|((_, before), (_, after))| before.d == after.d));
+        assert!(both().any(|((_, before), (_, after))| before.w != after.w));
 
-        let mut unknown = twice.rows().to_vec();
-        unknown.iter_mut().for_each(|row| row.sample.d_peak = None);
+        let unknown = changed(twice.rays().to_vec(), |ray| {
+            ray.samples.iter_mut().for_each(|sample| sample.d_peak = None);
+        });
         let checked = left_out(&database(unknown).on_both_meshes()).unwrap();
         assert_eq!(checked.uncorrected(), ["D"]);
     }
 
     #[test]
-    fn rows_solved_on_a_finer_tier_are_unchanged() {
+    fn rays_solved_on_a_finer_tier_are_unchanged() {
         let mut retried = coarse();
         retried[0].solved_tier = mesher::Tier::Fine;
-        let (corrected, _) = on_both(retried, rows(TWICE)).corrected().unwrap();
-        let same = |i: usize| corrected.rows()[i].sample == coarse()[i].sample;
+        let (corrected, _) = on_both(retried, rays(TWICE)).corrected().unwrap();
+        let same = |i: usize| corrected.rays()[i].samples == coarse()[i].samples;
         assert!(same(0) && !same(1));
     }
 
@@ -298,10 +299,10 @@ mod tests {
         let twice = twice();
         let bridge = Bridge::fit(&twice.on_both_meshes());
         let at = |theta: f64| {
-            let mut row = of_rays(&twice)[9].clone();
-            row.sample.theta = theta;
-            let corrected = bridge.corrected(&row);
-            [corrected.w / row.sample.w, corrected.m_theta / row.sample.m_theta]
+            let ray = &coarser(&twice)[0];
+            let sample = HingeSample { theta, ..ray.samples[9] };
+            let corrected = bridge.corrected(ray, &sample);
+            [corrected.w / sample.w, corrected.m_theta / sample.m_theta]
         };
         let [energy, moment] = at(3.0);
         assert_eq!(energy, at(2.0)[0]);
@@ -310,20 +311,19 @@ mod tests {
 
     #[test]
     fn too_few_rays_are_an_error() {
-        let few = on_both(coarse(), rows(TERMS.len())).corrected();
+        let few = on_both(coarse(), rays(TERMS.len())).corrected();
         let few = few.unwrap_err().to_string();
         assert!(few.contains("13 rays") && few.contains("at least 14"), "{few}");
-        assert!(on_both(coarse(), rows(14)).corrected().is_ok());
+        assert!(on_both(coarse(), rays(14)).corrected().is_ok());
     }
 
     #[test]
     fn zero_reference_damage_gives_no_correction() {
-        let gentle = rows(TWICE).into_iter().map(|mut row| {
-            row.sample.d = 0.0;
-            row
+        let gentle = changed(rays(TWICE), |ray| {
+            ray.samples.iter_mut().for_each(|sample| sample.d = 0.0);
         });
-        let twice = on_both(coarse(), gentle.collect());
+        let twice = on_both(coarse(), gentle);
         let (corrected, _) = twice.corrected().unwrap();
-        assert_eq!(corrected.rows()[3].sample.d, coarse()[3].sample.d);
+        assert_eq!(corrected.rays()[0].samples[3].d, coarse()[0].samples[3].d);
     }
 }

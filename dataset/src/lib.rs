@@ -2,7 +2,7 @@
 //!
 //! A database is `X.parquet` with its manifest `X.json`: hash, counts, units, training domain,
 //! rejected rows and the split. It is collected once with [`Database::collect`], which rejects
-//! invalid rows instead of repairing them. Rows of different materials or hinge constants are an
+//! invalid rows instead of repairing them. Rays of different materials or hinge constants are an
 //! error. Some rays may be there on a finer mesh too: [`Database::corrected`] corrects the others
 //! by them.
 //!
@@ -15,10 +15,10 @@
 //! # let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../data/polypropylene-3mm/hinges.parquet");
 //! let database = Database::read(&path)?;
 //! println!("{}", database.manifest().tier);
-//! for row in database.part(Subset::Test) {
-//!     assert!(row.sample.w.is_finite() && row.design.w_lig > 0.0);
+//! for ray in database.part(Subset::Test) {
+//!     assert!(ray.samples[0].w.is_finite() && ray.design.w_lig > 0.0);
 //! }
-//! # Ok::<_, dataset::DatasetError>(())
+//! # Ok::<_, support::Fault>(())
 //! ```
 
 #![cfg_attr(not(test), warn(unreachable_pub))]
@@ -32,7 +32,7 @@ mod digest;
 mod fidelity_correction;
 mod manifest;
 mod parquet;
-mod rows;
+mod rays;
 mod schema;
 mod split;
 mod summary;
@@ -44,6 +44,7 @@ pub use fidelity_correction::{LeftOut, left_out};
 pub use manifest::{AcceptanceLimits, FORMAT_VERSION, FinerMesh, Manifest, Rejection};
 
 pub use database_files::Collected;
-pub use rows::{Fidelity, Row, with_mirrored};
-pub use schema::{COLUMNS, ColumnMeaning, DatasetError};
+pub use fe_driver::{Fidelity, SolvedRay};
+pub use rays::{samples, with_mirrored};
+pub use schema::{COLUMNS, ColumnMeaning};
 pub use split::{Split, SplitPlan, Subset};

@@ -1,9 +1,9 @@
 //! The manifest `X.json` of a database `X.parquet`.
 
-use crate::rows::{Fidelity, Row};
 use crate::schema::is_finite;
 use crate::split::{Split, SplitPlan};
-use hinge::{HingeConstants, TrainingDomain};
+use fe_driver::{Fidelity, SolvedRay};
+use hinge::{HingeConstants, HingeSample, TrainingDomain};
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -80,14 +80,15 @@ pub struct FinerMesh {
 }
 
 impl Manifest {
-    /// What of the manifest is not true of the rows; `None` if all that is checked holds.
-    pub(crate) fn disagrees(&self, rows: &[Row]) -> Option<&'static str> {
-        let jobs: BTreeSet<&str> = rows.iter().map(|row| row.job.as_str()).collect();
+    /// What of the manifest is not true of the rays; `None` if all that is checked holds.
+    pub(crate) fn disagrees(&self, rays: &[SolvedRay]) -> Option<&'static str> {
+        let jobs: BTreeSet<&str> = rays.iter().map(|ray| ray.job.as_str()).collect();
+        let rows: usize = rays.iter().map(|ray| ray.samples.len()).sum();
         let Split { training, validation, test } = &self.split;
         let parts = [training, validation, test];
         let mut dealt = parts.into_iter().flatten();
         let finer = self.finer.as_ref().map_or(0, |finer| finer.rays);
-        if self.rows != rows.len() || self.rays + finer != jobs.len() {
+        if self.rows != rows || self.rays + finer != jobs.len() {
             Some("the numbers of rows or rays differ")
         } else if self.split_hash != self.split.hash() {
             Some("the split does not match its hash")
@@ -141,12 +142,11 @@ pub enum Rejection {
 }
 
 impl AcceptanceLimits {
-    /// Why `row` is rejected; `None` if it is accepted.
-    pub fn rejection(&self, row: &Row) -> Option<Rejection> {
-        let sample = &row.sample;
-        if !is_finite(row) {
+    /// Why a sample of a ray is rejected; `None` if it is accepted.
+    pub fn rejection(&self, ray: &SolvedRay, sample: &HingeSample) -> Option<Rejection> {
+        if !is_finite(ray, sample) {
             Some(Rejection::NotFinite)
-        } else if row.design.validate().is_err() {
+        } else if ray.design.validate().is_err() {
             Some(Rejection::InvalidDesign)
         } else if sample.w < 0.0 || sample.d < 0.0 {
             Some(Rejection::Negative)
@@ -161,24 +161,24 @@ impl AcceptanceLimits {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rows::tests::row;
+    use crate::rays::tests::ray;
 
     #[test]
     fn each_limit_rejects_its_own_defect() {
         let limits = AcceptanceLimits::default();
-        assert_eq!(limits.rejection(&row(0, 0.5)), None);
-        type Change = fn(&mut Row);
+        type Change = fn(&mut SolvedRay);
         let with = |change: Change| {
-            let mut row = row(0, 0.5);
-            change(&mut row);
-            limits.rejection(&row)
+            let mut ray = ray(0);
+            change(&mut ray);
+            limits.rejection(&ray, &ray.samples[4])
         };
+        assert_eq!(with(|_| ()), None);
         let cases: [(Change, Rejection); 5] = [
-            (|row| row.sample.f_s = f64::NAN, Rejection::NotFinite),
-            (|row| row.design.alpha = 4.0, Rejection::InvalidDesign),
-            (|row| row.sample.w = -1e-9, Rejection::Negative),
-            (|row| row.sample.d = -1e-9, Rejection::Negative),
-            (|row| row.sample.energy_residual = 0.021, Rejection::EnergyResidual),
+            (|ray| ray.samples[4].f_s = f64::NAN, Rejection::NotFinite),
+            (|ray| ray.design.alpha = 4.0, Rejection::InvalidDesign),
+            (|ray| ray.samples[4].w = -1e-9, Rejection::Negative),
+            (|ray| ray.samples[4].d = -1e-9, Rejection::Negative),
+            (|ray| ray.samples[4].energy_residual = 0.021, Rejection::EnergyResidual),
         ];
         for (change, expected) in cases {
             assert_eq!(with(change), Some(expected));

@@ -1,26 +1,29 @@
-//! Encoding and decoding of Parquet files, and their hash. A file is written in groups of rows, so
+//! Encoding and decoding of Parquet files, and their hash. A file is written in groups of rays, so
 //! that its table need not be in memory.
 
-use crate::rows::Row;
-use crate::schema::{self, DatasetError};
+use crate::schema::{self, no_table};
+use fe_driver::SolvedRay;
 use polars::io::parquet::write::{BatchedWriter, KeyValueMetadata};
-use polars::prelude::{CompatLevel, ParquetReader, ParquetWriter, SchemaExt, SerReader};
+use polars::prelude::{
+    CompatLevel, ParquetReader, ParquetWriter, PolarsResult, SchemaExt, SerReader,
+};
 use polars_parquet::write::schema_to_metadata_key;
 use std::io::{Cursor, Write};
-use support::{caught_panic, fault, refuse};
+use support::{Fault, caught_panic, fault, refuse};
 
-/// Number of rows of a group. The rows of one group are in memory at a time.
+/// Number of rows from which a group is complete. Its rays are in memory at a time.
 const GROUP: usize = 1 << 16;
 
-/// A Parquet file that is written while its rows arrive.
+/// A Parquet file that is written while its rays arrive.
 pub(crate) struct ParquetTable<W: Write> {
     writer: BatchedWriter<W>,
-    /// The rows of the next group.
-    waiting: Vec<Row>,
+    /// The rays of the next group, and the number of their rows.
+    waiting: Vec<SolvedRay>,
+    rows: usize,
 }
 
 impl<W: Write> ParquetTable<W> {
-    pub(crate) fn new(to: W) -> Result<Self, DatasetError> {
+    pub(crate) fn new(to: W) -> PolarsResult<Self> {
         let frame = schema::to_frame(&[])?;
         // Polars would declare texts as views, which Arrow's other libraries cannot filter or sort.
         let plain = schema_to_metadata_key(&frame.schema().to_arrow(CompatLevel::oldest()));
@@ -28,50 +31,53 @@ impl<W: Write> ParquetTable<W> {
         let writer = ParquetWriter::new(to)
             .with_key_value_metadata(Some(KeyValueMetadata::from_static(plain)))
             .batched(frame.schema())?;
-        Ok(Self { writer, waiting: Vec::new() })
+        Ok(Self { writer, waiting: Vec::new(), rows: 0 })
     }
 
-    /// Appends rows.
-    pub(crate) fn add(&mut self, rows: impl IntoIterator<Item = Row>) -> Result<(), DatasetError> {
-        self.waiting.extend(rows);
-        while self.waiting.len() >= GROUP {
-            let rest = self.waiting.split_off(GROUP);
-            let group = std::mem::replace(&mut self.waiting, rest);
-            self.writer.write_batch(&schema::to_frame(&group)?)?;
+    /// Appends a ray.
+    pub(crate) fn add(&mut self, ray: SolvedRay) -> PolarsResult<()> {
+        self.rows += ray.samples.len();
+        self.waiting.push(ray);
+        if self.rows >= GROUP {
+            self.write()?;
+            self.waiting.clear();
+            self.rows = 0;
         }
         Ok(())
     }
 
+    fn write(&mut self) -> PolarsResult<()> {
+        self.writer.write_batch(&schema::to_frame(&self.waiting)?)
+    }
+
     /// Writes what is left, and the end of the file.
-    pub(crate) fn finish(mut self) -> Result<(), DatasetError> {
-        self.writer.write_batch(&schema::to_frame(&self.waiting)?)?;
+    pub(crate) fn finish(mut self) -> PolarsResult<()> {
+        self.write()?;
         self.writer.finish()?;
         Ok(())
     }
 }
 
-/// The bytes of the Parquet file of `rows`.
-pub(crate) fn encode(rows: &[Row]) -> Result<Vec<u8>, DatasetError> {
+/// The bytes of the Parquet file of rays.
+pub(crate) fn encode(rays: &[SolvedRay]) -> PolarsResult<Vec<u8>> {
     let mut bytes = Vec::new();
     let mut table = ParquetTable::new(&mut bytes)?;
-    for group in rows.chunks(GROUP) {
-        table.add(group.iter().cloned())?;
-    }
+    rays.iter().try_for_each(|ray| table.add(ray.clone()))?;
     table.finish()?;
     Ok(bytes)
 }
 
-/// The rows of a Parquet file. The reader panics at some malformed files, which are errors like all
-/// others.
-pub(crate) fn decode(bytes: &[u8]) -> Result<Vec<Row>, DatasetError> {
-    let read = || -> Result<_, DatasetError> {
+/// The rays of a Parquet file. The reader panics at some malformed files, or gives columns of
+/// different lengths, which are errors like all others.
+pub(crate) fn decode(bytes: &[u8]) -> Result<Vec<SolvedRay>, Fault> {
+    let read = || {
         let mut reader = ParquetReader::new(Cursor::new(bytes));
         refuse_expanding(&mut reader, bytes.len())?;
-        Ok(reader.finish()?)
+        let frame = reader.finish().map_err(no_table)?;
+        schema::from_frame(&frame, EXPANSION.saturating_mul(bytes.len()))
     };
     let failed = |why| fault!("the file is malformed: the Parquet reader fails with `{why}`");
-    let frame = caught_panic::catch(read).map_err(failed)??;
-    schema::from_frame(&frame, EXPANSION.saturating_mul(bytes.len()))
+    caught_panic::catch(read).map_err(failed)?
 }
 
 /// Maximum number of values in a byte of a file. Measured values do not repeat: the shipped
@@ -81,12 +87,9 @@ const VALUES_A_BYTE: usize = 8;
 const EXPANSION: usize = 100;
 
 /// Rejects a file that would fill far more memory than its size, according to its metadata.
-fn refuse_expanding(
-    reader: &mut ParquetReader<Cursor<&[u8]>>,
-    bytes: usize,
-) -> Result<(), DatasetError> {
-    let width = reader.schema()?.len();
-    let metadata = reader.get_metadata()?;
+fn refuse_expanding(reader: &mut ParquetReader<Cursor<&[u8]>>, bytes: usize) -> Result<(), Fault> {
+    let width = reader.schema().map_err(no_table)?.len();
+    let metadata = reader.get_metadata().map_err(no_table)?;
     let groups = metadata.row_groups.iter();
     let columns = groups.flat_map(|group| group.parquet_columns());
     let (mut values, mut size) = (metadata.num_rows.saturating_mul(width), 0_usize);
@@ -143,28 +146,43 @@ impl<W: Write> Write for Hashing<W> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rows::tests::rows;
+    use crate::rays::tests::rays;
     use polars::prelude::{Column, DataFrame, IntoColumn, NamedFrom, Series};
+    use testkit::changed;
 
     #[test]
-    fn rows_that_arrive_in_parts_give_the_file_that_is_written_at_once() {
-        let rows = rows(7000);
-        assert!(rows.len() > GROUP);
+    fn the_rays_of_two_groups_are_read_back() {
+        let rays = rays(7000);
         let mut bytes = Hashing::new(Vec::new());
         let mut table = ParquetTable::new(&mut bytes).unwrap();
-        for ray in rows.chunks(10) {
-            table.add(ray.to_vec()).unwrap();
-        }
+        rays.iter().for_each(|ray| table.add(ray.clone()).unwrap());
         table.finish().unwrap();
         assert_eq!(bytes.hash(), hash(&bytes.to));
-        assert_eq!(bytes.to, encode(&rows).unwrap());
-        assert_eq!(decode(&bytes.to).unwrap(), rows);
+        let groups = ParquetReader::new(Cursor::new(&bytes.to)).get_metadata().unwrap().clone();
+        let groups: Vec<_> = groups.row_groups.iter().map(|group| group.num_rows()).collect();
+        assert_eq!(groups, [65_540, 4_460]);
+        assert_eq!(decode(&bytes.to).unwrap(), rays);
+    }
+
+    #[test]
+    fn the_rows_of_a_job_have_one_provenance_and_one_design() {
+        let read = |change: fn(&mut SolvedRay)| {
+            let rest = changed(rays(1), |ray| drop(ray.samples.drain(..5)));
+            let first = changed(rays(1), |ray| ray.samples.truncate(5));
+            let parts = [changed(first, change), rest].concat();
+            decode(&encode(&parts).unwrap()).map_err(|error| error.to_string())
+        };
+        assert_eq!(read(|_| ()).unwrap(), rays(1));
+        let differ =
+            |name| Err(format!("column `{name}`: the rows of a job have different values"));
+        assert_eq!(read(|ray| ray.material = "steel".into()), differ("material"));
+        assert_eq!(read(|ray| ray.design.w_lig += 1e-9), differ("w_lig"));
     }
 
     #[test]
     fn texts_are_of_the_type_that_every_reader_of_parquet_filters() {
-        let bytes = encode(&rows(3)).unwrap();
-        let frame = schema::to_frame(&rows(3)).unwrap();
+        let bytes = encode(&rays(3)).unwrap();
+        let frame = schema::to_frame(&rays(3)).unwrap();
         let declared = |level| schema_to_metadata_key(&frame.schema().to_arrow(level)).value;
         let mut reader = ParquetReader::new(Cursor::new(&bytes));
         let metadata = reader.get_metadata().unwrap().key_value_metadata.clone().unwrap();
@@ -184,18 +202,19 @@ mod tests {
         assert!(error.starts_with("the file claims "), "{error}");
     }
 
-    /// A text that all rows share is stored once, and would be in memory once a row.
+    /// A text that all rows share is stored once, and would be in memory once a ray.
     #[test]
     fn a_small_file_of_very_much_text_is_refused_before_it_is_copied() {
-        let mut large = rows(300);
-        let long = "x".repeat(10_000);
-        large.iter_mut().for_each(|row| row.material = long.clone());
+        let large = changed(rays(300), |ray| {
+            ray.samples.truncate(1);
+            ray.material = "x".repeat(50_000);
+        });
         let bytes = encode(&large).unwrap();
         let error = decode(&bytes).unwrap_err().to_string();
         let refused = error.starts_with("the texts of the table exceed ");
         assert!(refused && error.contains("column `material`"), "{error}");
-        // The most regular rows that a solver could give are read.
-        let regular = rows(300);
+        // The most regular rays that a solver could give are read.
+        let regular = rays(300);
         assert_eq!(decode(&encode(&regular).unwrap()).unwrap(), regular);
     }
 
@@ -207,7 +226,7 @@ mod tests {
 
     #[test]
     fn a_malformed_file_is_an_error_and_no_panic() {
-        let bytes = encode(&rows(3)).unwrap();
+        let bytes = encode(&rays(3)).unwrap();
         let end = bytes.len();
         let length = u32::from_le_bytes(bytes[end - 8..end - 4].try_into().unwrap()) as usize;
         let (mut state, mut panics, mut errors) = (1, 0, 0);

@@ -1,8 +1,12 @@
 //! The columns of the database, their units and their meanings.
 
-use crate::rows::Row;
-use polars::prelude::{Column, DataFrame, IntoColumn, NamedFrom, Series};
-use support::{Fault, fault, refuse};
+use crate::rays::samples;
+use fe_driver::SolvedRay;
+use hinge::HingeSample;
+use polars::prelude::{
+    Column, DataFrame, IntoColumn, NamedFrom, PolarsError, PolarsResult, Series,
+};
+use support::{Fault, ensure, fault, refuse};
 
 /// What a column of a database holds.
 #[derive(Debug)]
@@ -16,13 +20,15 @@ pub struct ColumnMeaning {
     value: Value,
 }
 
-/// Getter and setter of a column in a row.
+/// Getter and setter of a column.
 #[derive(Debug)]
 enum Value {
-    Text(fn(&Row) -> String, fn(&mut Row, &str) -> Result<(), String>),
-    Number(fn(&Row) -> f64, fn(&mut Row, f64)),
-    /// D_peak, the only number that may be missing.
-    Peak,
+    /// A text of a ray, which all of its rows have.
+    Text(fn(&SolvedRay) -> String, fn(&mut SolvedRay, &str) -> Result<(), String>),
+    /// A number of a ray, which all of its rows have.
+    OfRay(fn(&SolvedRay) -> f64, fn(&mut SolvedRay, f64)),
+    /// A number of a sample. One that a default sample lacks may be missing: D_peak.
+    OfSample(fn(&HingeSample) -> Option<f64>, fn(&mut HingeSample, f64)),
     /// A ratio of (13). It is written for readers of the table and recomputed when it is read.
     Ratio(usize),
 }
@@ -32,23 +38,21 @@ impl ColumnMeaning {
         Self { name, unit, meaning, value }
     }
 
-    /// The number in a row, NaN if it is missing; `None` in a column of text.
-    pub(crate) fn number(&self, row: &Row) -> Option<f64> {
+    /// The number in the row of a sample; `None` if it is missing, and in a column of text.
+    pub(crate) fn number(&self, ray: &SolvedRay, sample: &HingeSample) -> Option<f64> {
         match self.value {
             Value::Text(..) => None,
-            Value::Number(get, _) => Some(get(row)),
-            Value::Peak => Some(row.sample.d_peak.unwrap_or(f64::NAN)),
-            Value::Ratio(index) => Some(row.eta()[index]),
+            Value::OfRay(get, _) => Some(get(ray)),
+            Value::OfSample(get, _) => get(sample),
+            Value::Ratio(index) => Some(sample.deformation().eta(ray.design.w_lig)[index]),
         }
     }
 
-    /// The value in a row as text, empty if it is missing.
-    pub(crate) fn text(&self, row: &Row) -> String {
-        match (&self.value, self.number(row)) {
-            (Value::Text(get, _), _) => get(row),
-            (_, number) => number
-                .filter(|number| !number.is_nan())
-                .map_or(String::new(), |number| number.to_string()),
+    /// The value in the row of a sample as text, empty if it is missing.
+    pub(crate) fn text(&self, ray: &SolvedRay, sample: &HingeSample) -> String {
+        match self.value {
+            Value::Text(get, _) => get(ray),
+            _ => self.number(ray, sample).map_or(String::new(), |number| number.to_string()),
         }
     }
 
@@ -57,11 +61,20 @@ impl ColumnMeaning {
     }
 }
 
-macro_rules! number {
+macro_rules! of_ray {
     ($name:literal [$unit:literal] = $first:ident $(. $rest:ident)*, $meaning:literal) => {
         ColumnMeaning::new(
             [$name, $unit, $meaning],
-            Value::Number(|row| row.$first $(.$rest)*, |row, value| row.$first $(.$rest)* = value),
+            Value::OfRay(|ray| ray.$first $(.$rest)*, |ray, value| ray.$first $(.$rest)* = value),
+        )
+    };
+}
+
+macro_rules! of_sample {
+    ($name:literal [$unit:literal] = $field:ident, $meaning:literal) => {
+        ColumnMeaning::new(
+            [$name, $unit, $meaning],
+            Value::OfSample(|sample| Some(sample.$field), |sample, value| sample.$field = value),
         )
     };
 }
@@ -71,9 +84,9 @@ macro_rules! text {
         ColumnMeaning::new(
             [$name, "", $meaning],
             Value::Text(
-                |row| row.$first $(.$rest)*.to_string(),
-                |row, text| {
-                    row.$first $(.$rest)* = text.parse().map_err(|error| format!("{error}"))?;
+                |ray| ray.$first $(.$rest)*.to_string(),
+                |ray, text| {
+                    ray.$first $(.$rest)* = text.parse().map_err(|error| format!("{error}"))?;
                     Ok(())
                 },
             ),
@@ -87,10 +100,10 @@ pub static COLUMNS: [ColumnMeaning; 32] = [
     ColumnMeaning::new(
         ["failure", "", "why the ray stopped before its end; empty if it did not"],
         Value::Text(
-            |row| row.failure.map_or(String::new(), |kind| kind.to_string()),
-            |row, text| {
+            |ray| ray.failure.map_or(String::new(), |kind| kind.to_string()),
+            |ray, text| {
                 let kind = (!text.is_empty()).then(|| text.parse()).transpose();
-                row.failure = kind.map_err(|error: Fault| error.to_string())?;
+                ray.failure = kind.map_err(|error: Fault| error.to_string())?;
                 Ok(())
             },
         ),
@@ -105,45 +118,45 @@ pub static COLUMNS: [ColumnMeaning; 32] = [
     text!("solved_tier" = solved_tier, "mesh of the row"),
     text!("gmsh" = tools.gmsh, "version of gmsh"),
     text!("ccx" = tools.ccx, "version of ccx"),
-    number!(
+    of_ray!(
         "w_lig"["mm"] = design.w_lig,
         "ligament width: material between the tip of the main cut and the secondary cut"
     ),
-    number!("alpha"["rad"] = design.alpha, "angle between the secondary and the main cut"),
-    number!("fillet_ratio"[""] = design.fillet_ratio, "radius of the hole at the tip, over w_lig"),
-    number!("kerf"["mm"] = design.kerf, "width that the tool removes along the main cut"),
-    number!("r_win"["mm"] = design.r_win, "radius of the window"),
-    number!("lambda"[""] = sample.lambda, "fraction of the ray, above 0, at most 1"),
-    number!("a"["mm"] = sample.a, "axial opening at the tip"),
-    number!("s"["mm"] = sample.s, "shear at the tip"),
-    number!("theta"["rad"] = sample.theta, "rotation; positive where the main cut opens"),
-    number!("W"["N mm"] = sample.w, "internal work, stored plus dissipated"),
-    number!(
-        "W_work"["N mm"] = sample.w_work,
+    of_ray!("alpha"["rad"] = design.alpha, "angle between the secondary and the main cut"),
+    of_ray!("fillet_ratio"[""] = design.fillet_ratio, "radius of the hole at the tip, over w_lig"),
+    of_ray!("kerf"["mm"] = design.kerf, "width that the tool removes along the main cut"),
+    of_ray!("r_win"["mm"] = design.r_win, "radius of the window"),
+    of_sample!("lambda"[""] = lambda, "fraction of the ray, above 0, at most 1"),
+    of_sample!("a"["mm"] = a, "axial opening at the tip"),
+    of_sample!("s"["mm"] = s, "shear at the tip"),
+    of_sample!("theta"["rad"] = theta, "rotation; positive where the main cut opens"),
+    of_sample!("W"["N mm"] = w, "internal work, stored plus dissipated"),
+    of_sample!(
+        "W_work"["N mm"] = w_work,
         "work of the reactions along the ray, by the trapezoidal rule"
     ),
-    number!("W_elastic"["N mm"] = sample.w_elastic, "elastic part of W"),
-    number!("F_a"["N"] = sample.f_a, "axial force"),
-    number!("F_s"["N"] = sample.f_s, "shear force"),
-    number!("M_theta"["N mm"] = sample.m_theta, "moment"),
-    number!(
-        "plastic_integral"["mm^3"] = sample.plastic_integral,
+    of_sample!("W_elastic"["N mm"] = w_elastic, "elastic part of W"),
+    of_sample!("F_a"["N"] = f_a, "axial force"),
+    of_sample!("F_s"["N"] = f_s, "shear force"),
+    of_sample!("M_theta"["N mm"] = m_theta, "moment"),
+    of_sample!(
+        "plastic_integral"["mm^3"] = plastic_integral,
         "equivalent plastic strain integrated over the window"
     ),
-    number!("D"[""] = sample.d, "mean plastic strain of the ligament over the fracture strain"),
-    number!("uz_max"["mm"] = sample.uz_max, "largest displacement out of the plane"),
-    number!(
-        "energy_residual"[""] = sample.energy_residual,
+    of_sample!("D"[""] = d, "mean plastic strain of the ligament over the fracture strain"),
+    of_sample!("uz_max"["mm"] = uz_max, "largest displacement out of the plane"),
+    of_sample!(
+        "energy_residual"[""] = energy_residual,
         "difference of W and W_work over the maximum W of the ray"
     ),
-    number!("cpu_s"["s"] = cpu_s, "CPU time of the whole ray, repeated in each of its rows"),
+    of_ray!("cpu_s"["s"] = cpu_s, "CPU time of the whole ray, repeated in each of its rows"),
     ColumnMeaning::new(
         [
             "D_peak",
             "",
             "plastic strain of the most strained 1 % of the ligament over the fracture strain; may be missing",
         ],
-        Value::Peak,
+        Value::OfSample(|sample| sample.d_peak, |sample, peak| sample.d_peak = Some(peak)),
     ),
     ColumnMeaning::new(
         ["eta_a", "", "a / w_lig; computed from these when a table is read"],
@@ -155,83 +168,101 @@ pub static COLUMNS: [ColumnMeaning; 32] = [
     ),
 ];
 
-/// Why a database cannot be collected, read, written or corrected.
-#[derive(Debug, thiserror::Error)]
-pub enum DatasetError {
-    /// The table has other columns or types.
-    #[error("the table is not a valid database: {0}")]
-    Table(#[from] polars::error::PolarsError),
-    /// Any other mistake.
-    #[error(transparent)]
-    Fault(#[from] Fault),
+/// The error of a table with other columns or types.
+pub(crate) fn no_table(error: PolarsError) -> Fault {
+    fault!("the table is not a valid database: {error}")
 }
 
-/// The table of `rows`.
-pub(crate) fn to_frame(rows: &[Row]) -> Result<DataFrame, DatasetError> {
+/// The table of rays: a row a sample.
+pub(crate) fn to_frame(rays: &[SolvedRay]) -> PolarsResult<DataFrame> {
+    let rows = samples(rays);
     let column = |column: &ColumnMeaning| -> Column {
-        let (name, rows) = (column.name.into(), rows.iter());
+        let (name, rows) = (column.name.into(), rows.clone());
         let series = match column.value {
-            Value::Text(get, _) => Series::new(name, rows.map(get).collect::<Vec<_>>()),
-            Value::Peak => Series::new(name, rows.map(|row| row.sample.d_peak).collect::<Vec<_>>()),
-            _ => Series::new(name, rows.filter_map(|row| column.number(row)).collect::<Vec<_>>()),
+            Value::Text(get, _) => {
+                Series::new(name, rows.map(|(ray, _)| get(ray)).collect::<Vec<_>>())
+            }
+            _ => {
+                let numbers = rows.map(|(ray, sample)| column.number(ray, sample));
+                Series::new(name, numbers.collect::<Vec<_>>())
+            }
         };
         series.into_column()
     };
-    Ok(DataFrame::new(rows.len(), COLUMNS.iter().map(column).collect())?)
+    DataFrame::new(rows.clone().count(), COLUMNS.iter().map(column).collect())
 }
 
-/// The rows of a table. Every column must exist with its type, without gaps except where a value
-/// may be unknown, and every number must be finite. A text that many rows share is in the table
-/// once and in every row: over `most_text` bytes in all rows are refused.
-pub(crate) fn from_frame(frame: &DataFrame, most_text: usize) -> Result<Vec<Row>, DatasetError> {
+/// The rays of a table: rows one after the other with the same job. Every column must exist with
+/// its type, without gaps except where a value may be unknown, and every number must be finite. A
+/// text that many rows share is in the table once and in every ray: over `most_text` bytes are
+/// refused.
+pub(crate) fn from_frame(frame: &DataFrame, most_text: usize) -> Result<Vec<SolvedRay>, Fault> {
     let mut left = most_text;
-    let mut rows = vec![Row::default(); frame.height()];
+    let texts = |name| frame.column(name).and_then(Column::str).map_err(no_table);
+    let numbers = |name| frame.column(name).and_then(Column::f64).map_err(no_table);
+    let jobs = texts("job")?;
+    let is_first = |row: &usize| *row == 0 || jobs.get(*row) != jobs.get(row - 1);
+    let starts: Vec<usize> = (0..frame.height()).filter(is_first).collect();
+    let ends = starts.iter().skip(1).copied().chain([frame.height()]);
+    let ray = |(start, end): (&usize, usize)| SolvedRay {
+        samples: vec![HingeSample::default(); end - start],
+        ..SolvedRay::default()
+    };
+    let mut rays: Vec<SolvedRay> = std::iter::zip(&starts, ends).map(ray).collect();
     for ColumnMeaning { name, value, .. } in &COLUMNS {
-        let gap = |index| fault!("column `{name}` has no value in row {index}");
-        let series = frame.column(name)?;
+        let gap = |row| fault!("column `{name}` has no value in row {row}");
         match value {
             Value::Text(_, set) => {
-                for (index, (row, text)) in rows.iter_mut().zip(series.str()?.iter()).enumerate() {
-                    let text = text.ok_or_else(|| gap(index))?;
+                let texts = texts(name)?;
+                for (ray, &row) in rays.iter_mut().zip(&starts) {
+                    let text = texts.get(row).ok_or_else(|| gap(row))?;
                     left = left.checked_sub(text.len()).ok_or_else(|| {
                         fault!(
-                            "the texts of the table exceed {most_text} bytes at row {index} of the \
+                            "the texts of the table exceed {most_text} bytes at row {row} of the \
                              column `{name}`: the file is damaged, or made to fill the memory"
                         )
                     })?;
-                    set(row, text)
-                        .map_err(|error| fault!("column `{name}`, row {index}: {error}"))?;
+                    set(ray, text)
+                        .map_err(|error| fault!("column `{name}`, row {row}: {error}"))?;
                 }
             }
-            Value::Number(_, set) => {
-                for (index, (row, number)) in rows.iter_mut().zip(series.f64()?.iter()).enumerate()
-                {
-                    set(row, number.ok_or_else(|| gap(index))?);
+            Value::OfRay(_, set) => {
+                let numbers = numbers(name)?;
+                for (ray, &row) in rays.iter_mut().zip(&starts) {
+                    set(ray, numbers.get(row).ok_or_else(|| gap(row))?);
                 }
             }
-            Value::Peak => {
-                for (row, peak) in rows.iter_mut().zip(series.f64()?.iter()) {
-                    row.sample.d_peak = peak;
+            Value::OfSample(get, set) => {
+                let samples = rays.iter_mut().flat_map(|ray| &mut ray.samples);
+                for (row, (sample, number)) in samples.zip(numbers(name)?.iter()).enumerate() {
+                    match number {
+                        Some(number) => set(sample, number),
+                        None if get(sample).is_none() => {}
+                        None => return Err(gap(row)),
+                    }
                 }
             }
             Value::Ratio(_) => {}
         }
     }
-    match rows.iter().find(|row| !is_finite(row)) {
-        Some(Row { job, sample, .. }) => refuse!(
-            "job {job}, lambda = {}: the row contains a number that is not finite",
-            sample.lambda
-        ),
-        None => Ok(rows),
+    let bad = samples(&rays).find(|(ray, sample)| !is_finite(ray, sample));
+    if let Some((SolvedRay { job, .. }, HingeSample { lambda, .. })) = bad {
+        refuse!("job {job}, lambda = {lambda}: the row contains a number that is not finite");
     }
+    let written = to_frame(&rays).map_err(no_table)?;
+    let same = |name| Ok(written.column(name)?.equals_missing(frame.column(name)?));
+    let of_ray =
+        |column: &&ColumnMeaning| matches!(column.value, Value::Text(..) | Value::OfRay(..));
+    for ColumnMeaning { name, .. } in COLUMNS.iter().filter(of_ray) {
+        ensure!(
+            same(name).map_err(no_table)?,
+            "column `{name}`: the rows of a job have different values"
+        );
+    }
+    Ok(rays)
 }
 
-/// Whether every number of the row is finite.
-pub(crate) fn is_finite(row: &Row) -> bool {
-    let is_finite = |column: &ColumnMeaning| match column.value {
-        Value::Number(get, _) => get(row).is_finite(),
-        Value::Peak => row.sample.d_peak.is_none_or(f64::is_finite),
-        _ => true,
-    };
-    COLUMNS.iter().all(is_finite)
+/// Whether every number in the row of a sample is finite.
+pub(crate) fn is_finite(ray: &SolvedRay, sample: &HingeSample) -> bool {
+    COLUMNS.iter().all(|column| column.number(ray, sample).is_none_or(f64::is_finite))
 }

@@ -3,15 +3,15 @@
 //! All rays of one (w_lig, alpha) and of its mirror image belong to the same part. The test part
 //! therefore contains only geometries that are not in the training part.
 
-use crate::rows::Row;
-use crate::schema::DatasetError;
+use fe_driver::SolvedRay;
+use hinge::{HingeDesign, HingeSample};
 use rand::SeedableRng;
 use rand::seq::SliceRandom;
 use rand_chacha::ChaCha8Rng;
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::{FRAC_PI_2, PI};
-use support::ensure;
+use support::{Fault, ensure};
 
 /// How geometries are assigned to the parts.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -61,7 +61,7 @@ pub struct Split {
 
 impl Split {
     /// Assigns geometries at random; every part has at least one of them, unless all are to test.
-    pub(crate) fn deal(geometries: &Geometries, plan: &SplitPlan) -> Result<Self, DatasetError> {
+    pub(crate) fn deal(geometries: &Geometries, plan: &SplitPlan) -> Result<Self, Fault> {
         if *plan == SplitPlan::TEST {
             let jobs = geometries.0.values().flatten().cloned();
             return Ok(Self { test: jobs.collect(), ..Self::default() });
@@ -126,12 +126,9 @@ impl Split {
 pub(crate) struct Geometries(BTreeMap<[i64; 2], Vec<String>>);
 
 impl Geometries {
-    /// Adds the geometry and the job of a row. The rows of a job must come one after the other.
-    pub(crate) fn add(&mut self, row: &Row) {
-        let jobs = self.0.entry(geometry(row)).or_default();
-        if jobs.last() != Some(&row.job) {
-            jobs.push(row.job.clone());
-        }
+    /// Adds the geometry and the job of a ray.
+    pub(crate) fn add(&mut self, ray: &SolvedRay) {
+        self.0.entry(geometry(&ray.design)).or_default().push(ray.job.clone());
     }
 
     /// Number of distinct (w_lig, alpha), up to mirroring.
@@ -142,38 +139,39 @@ impl Geometries {
 
 /// (w_lig, alpha) up to mirroring, in units of 1e-9, so the rounding error of pi - alpha has
 /// no effect.
-pub(crate) fn geometry(row: &Row) -> [i64; 2] {
-    let alpha = row.design.alpha.min(PI - row.design.alpha);
-    [row.design.w_lig, alpha].map(|value| (1e9 * value).round() as i64)
+pub(crate) fn geometry(design: &HingeDesign) -> [i64; 2] {
+    let alpha = design.alpha.min(PI - design.alpha);
+    [design.w_lig, alpha].map(|value| (1e9 * value).round() as i64)
 }
 
 /// The geometry and (a, s, theta) up to mirroring, in units of 1e-9.
-pub(crate) fn state(row: &Row) -> ([i64; 2], [i64; 3]) {
-    let s = if row.design.alpha > FRAC_PI_2 { -row.sample.s } else { row.sample.s };
-    let deformation = [row.sample.a, s, row.sample.theta];
-    (geometry(row), deformation.map(|value| (1e9 * value).round() as i64))
+pub(crate) fn state(design: &HingeDesign, sample: &HingeSample) -> ([i64; 2], [i64; 3]) {
+    let s = if design.alpha > FRAC_PI_2 { -sample.s } else { sample.s };
+    let deformation = [sample.a, s, sample.theta];
+    (geometry(design), deformation.map(|value| (1e9 * value).round() as i64))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rows::tests::rows;
-    use crate::rows::with_mirrored;
+    use crate::rays::tests::rays;
+    use crate::rays::with_mirrored;
+    use testkit::changed;
 
-    fn geometries(rows: &[Row]) -> Geometries {
+    fn geometries(rays: &[SolvedRay]) -> Geometries {
         let mut geometries = Geometries::default();
-        rows.iter().for_each(|row| geometries.add(row));
+        rays.iter().for_each(|ray| geometries.add(ray));
         geometries
     }
 
-    fn deal(rows: &[Row], seed: u64) -> Split {
+    fn deal(rays: &[SolvedRay], seed: u64) -> Split {
         let plan = SplitPlan { seed, validation: 0.2, test: 0.3 };
-        Split::deal(&geometries(rows), &plan).unwrap()
+        Split::deal(&geometries(rays), &plan).unwrap()
     }
 
     #[test]
     fn parts_are_disjoint_and_complete_and_have_the_requested_fractions() {
-        let split = deal(&rows(20), 7);
+        let split = deal(&rays(20), 7);
         let counts =
             [Subset::Training, Subset::Validation, Subset::Test].map(|part| split.jobs(part).len());
         assert_eq!(counts, [10, 4, 6]);
@@ -184,19 +182,16 @@ mod tests {
 
     #[test]
     fn the_split_depends_on_the_seed() {
-        let rows = rows(20);
-        assert_eq!(deal(&rows, 7), deal(&rows, 7));
-        assert_ne!(deal(&rows, 7), deal(&rows, 8));
+        let rays = rays(20);
+        assert_eq!(deal(&rays, 7), deal(&rays, 7));
+        assert_ne!(deal(&rays, 7), deal(&rays, 8));
     }
 
     #[test]
     fn rays_and_mirror_images_of_a_geometry_stay_together() {
-        let mut images = with_mirrored(&rows(10)).split_off(100);
-        for image in &mut images {
-            image.job.push_str("-image");
-        }
-        let all: Vec<Row> = rows(10).into_iter().chain(images).collect();
-        let split = deal(&all, 3);
+        let images = with_mirrored(&rays(10)).split_off(10);
+        let images = changed(images, |image| image.job.push_str("-image"));
+        let split = deal(&[rays(10), images].concat(), 3);
         for part in [Subset::Training, Subset::Validation, Subset::Test] {
             for job in split.jobs(part) {
                 let twin = job.strip_suffix("-image").map_or(format!("{job}-image"), Into::into);
@@ -208,15 +203,15 @@ mod tests {
     #[test]
     fn too_few_geometries_and_impossible_fractions_are_rejected() {
         let plan = SplitPlan::default();
-        let error = Split::deal(&geometries(&rows(2)), &plan).unwrap_err();
+        let error = Split::deal(&geometries(&rays(2)), &plan).unwrap_err();
         assert!(error.to_string().starts_with("2 geometries"), "{error}");
-        let tested = Split::deal(&geometries(&rows(1)), &SplitPlan::TEST).unwrap();
+        let tested = Split::deal(&geometries(&rays(1)), &SplitPlan::TEST).unwrap();
         assert_eq!([tested.training.len(), tested.validation.len(), tested.test.len()], [0, 0, 1]);
-        let three = Split::deal(&geometries(&rows(3)), &plan).unwrap();
+        let three = Split::deal(&geometries(&rays(3)), &plan).unwrap();
         assert_eq!(three.training.len(), 1);
         for (validation, test) in [(0.0, 0.1), (0.1, 0.5), (0.1, f64::NAN)] {
             let plan = SplitPlan { validation, test, ..plan };
-            let error = Split::deal(&geometries(&rows(9)), &plan).unwrap_err();
+            let error = Split::deal(&geometries(&rays(9)), &plan).unwrap_err();
             assert!(error.to_string().starts_with("the fractions"), "{error}");
         }
     }

@@ -2,22 +2,23 @@
 
 use crate::database::Database;
 use crate::manifest::{FinerMesh, Manifest};
-use crate::rows::Row;
 use crate::schema::COLUMNS;
 use crate::split::Subset;
+use fe_driver::SolvedRay;
 use mesher::Tier;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
+use support::Joined;
 use support::table::Table;
 
-/// What a summary states of the rows beyond the manifest.
+/// What a summary states of the rays beyond the manifest.
 #[derive(Debug)]
 pub(crate) struct Contents {
     /// The minimum and the maximum of every column; infinite without a number.
     ranges: [[f64; 2]; COLUMNS.len()],
-    /// The rays that were solved on another tier than the tier of their campaign, each with the
-    /// tier on which it was solved.
-    other_tiers: BTreeMap<String, Tier>,
+    /// Number of rays that were solved on another tier than the tier of their campaign, by the tier
+    /// on which they were solved.
+    other_tiers: BTreeMap<Tier, usize>,
 }
 
 impl Default for Contents {
@@ -30,17 +31,17 @@ impl Default for Contents {
 }
 
 impl Contents {
-    /// Adds rows.
-    pub(crate) fn add(&mut self, rows: &[Row]) {
-        for row in rows {
+    /// Adds a ray.
+    pub(crate) fn add(&mut self, ray: &SolvedRay) {
+        for sample in &ray.samples {
             for ([minimum, maximum], column) in self.ranges.iter_mut().zip(&COLUMNS) {
-                let value = column.number(row).unwrap_or(f64::NAN);
+                let value = column.number(ray, sample).unwrap_or(f64::NAN);
                 *minimum = minimum.min(value);
                 *maximum = maximum.max(value);
             }
-            if !row.at_requested_tier() {
-                (self.other_tiers).insert(row.job.clone(), row.solved_tier);
-            }
+        }
+        if !ray.at_requested_tier() {
+            *self.other_tiers.entry(ray.solved_tier).or_default() += 1;
         }
     }
 }
@@ -48,7 +49,7 @@ impl Contents {
 impl fmt::Display for Database {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let mut contents = Contents::default();
-        contents.add(self.rows());
+        self.rays().iter().for_each(|ray| contents.add(ray));
         contents.summary(self.manifest(), f)
     }
 }
@@ -66,10 +67,11 @@ impl Contents {
         if let Some(FinerMesh { tier, rays, cpu_s }) = &manifest.finer {
             writeln!(f, "{rays} of the rays also on tier {tier}; {cpu_s:.0} CPU s")?;
         }
-        let count = self.other_tiers.len();
+        let count: usize = self.other_tiers.values().sum();
         if count > 0 {
             let were = if count == 1 { "ray was" } else { "rays were" };
-            let tiers = counted(self.other_tiers.values());
+            let tiers = self.other_tiers.iter().map(|(tier, count)| format!("{tier} ({count})"));
+            let tiers = tiers.joined(", ");
             writeln!(f, "{count} {were} solved on another mesh after a failure: {tiers}")?;
         }
         let [law, settings] = [&manifest.material_hashes, &manifest.settings_hashes].map(known);
@@ -104,37 +106,28 @@ fn limit(value: f64) -> String {
     if value.is_finite() { format!("{value:.6}") } else { "-".into() }
 }
 
-/// Every tier with the number of times that it occurs.
-fn counted<'a>(tiers: impl Iterator<Item = &'a Tier>) -> String {
-    let mut counts: BTreeMap<&Tier, usize> = BTreeMap::new();
-    for tier in tiers {
-        *counts.entry(tier).or_default() += 1;
-    }
-    let counts = counts.iter().map(|(tier, count)| format!("{tier} ({count})"));
-    Vec::from_iter(counts).join(", ")
-}
-
 /// Hashes as readable text.
 fn known(hashes: &BTreeSet<String>) -> String {
-    let known: Vec<&str> =
-        hashes.iter().map(String::as_str).filter(|hash| !hash.is_empty()).collect();
-    if known.is_empty() { "not known".into() } else { known.join(" + ") }
+    let known = hashes.iter().map(String::as_str).filter(|hash| !hash.is_empty()).joined(" + ");
+    if known.is_empty() { "not known".into() } else { known }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rows::tests::{finer, rows};
+    use crate::rays::tests::{finer, rays};
     use crate::split::SplitPlan;
+    use hinge::HingeSample;
+    use testkit::changed;
 
-    fn summary(rows: Vec<Row>) -> String {
-        let database = Database::collect(rows, &SplitPlan::default());
+    fn summary(rays: Vec<SolvedRay>) -> String {
+        let database = Database::collect(rays, &SplitPlan::default());
         database.unwrap().to_string()
     }
 
     #[test]
     fn a_finer_mesh_has_a_line_of_its_own() {
-        let both = summary([rows(10), finer(rows(4))].concat());
+        let both = summary([rays(10), finer(rays(4))].concat());
         let lines: Vec<&str> = both.lines().collect();
         assert_eq!(
             lines[..2],
@@ -143,19 +136,17 @@ mod tests {
                 "4 of the rays also on tier reference; 40 CPU s"
             ]
         );
-        assert!(!summary(rows(10)).contains("of the rays also on tier"));
+        assert!(!summary(rays(10)).contains("of the rays also on tier"));
     }
 
     #[test]
     fn rays_on_another_mesh_are_counted_by_its_tier() {
         let retried = |tiers: &[(&str, Tier)]| {
-            let mut rows = rows(10);
-            for row in &mut rows {
-                if let Some((_, tier)) = tiers.iter().find(|(job, _)| row.job == *job) {
-                    row.solved_tier = *tier;
+            let text = summary(changed(rays(10), |ray| {
+                if let Some((_, tier)) = tiers.iter().find(|(job, _)| ray.job == *job) {
+                    ray.solved_tier = *tier;
                 }
-            }
-            let text = summary(rows);
+            }));
             let mut lines = text.lines().map(str::to_owned);
             lines.find(|line| line.contains("after a failure"))
         };
@@ -173,7 +164,7 @@ mod tests {
 
     #[test]
     fn every_column_has_a_line_with_its_unit_and_its_meaning() {
-        let text = summary(rows(10));
+        let text = summary(rays(10));
         for column in &COLUMNS {
             let name = format!(" {} ", column.name);
             let mut lines = text.lines().filter(|line| line.starts_with(&name));
@@ -189,17 +180,18 @@ mod tests {
 
     #[test]
     fn a_column_without_values_has_no_range() {
-        let mut unknown = rows(10);
-        unknown[7].sample.d_peak = None;
-        let range = |rows: Vec<Row>| {
-            let text = summary(rows);
+        let mut unknown = rays(10);
+        unknown[0].samples[7].d_peak = None;
+        let range = |rays: Vec<SolvedRay>| {
+            let text = summary(rays);
             let mut lines = text.lines().map(str::split_whitespace);
             let mut of_peak = lines.find(|words| words.clone().next() == Some("D_peak"));
             let words = of_peak.as_mut().unwrap().skip(1).take(2);
             words.map(str::to_owned).collect::<Vec<_>>()
         };
         assert_eq!(range(unknown.clone()), ["0.010000", "0.100000"]);
-        unknown.iter_mut().for_each(|row| row.sample.d_peak = None);
+        let none = |sample: &mut HingeSample| sample.d_peak = None;
+        unknown.iter_mut().flat_map(|ray| &mut ray.samples).for_each(none);
         assert_eq!(range(unknown), ["-", "-"]);
     }
 }

@@ -6,6 +6,7 @@ pub(crate) mod deformation_path;
 pub(crate) mod failure;
 pub(crate) mod service;
 pub(crate) mod solve_folder;
+pub(crate) mod solved_ray;
 pub(crate) mod solver;
 #[cfg(test)]
 pub(crate) mod tests;

@@ -57,10 +57,10 @@ impl DatasetCommand {
                 for finding in &findings {
                     println!("{finding}");
                 }
-                for row in database.rays_on_other_tiers() {
+                for ray in database.rays_on_other_tiers() {
                     println!(
                         "note: ray {} was solved on the mesh {}, not on {}",
-                        row.job, row.solved_tier, row.tier
+                        ray.job, ray.solved_tier, ray.tier
                     );
                 }
                 ensure!(findings.is_empty(), "{} is not fit for training", file.display());

@@ -4,7 +4,7 @@
 
 pub(crate) mod pages;
 
-use dataset::{Database, Row};
+use dataset::{Database, SolvedRay};
 use serde_json::Value;
 use std::os::unix::fs::symlink;
 use std::path::{Path, PathBuf};
@@ -122,10 +122,10 @@ pub(crate) fn assert_contains(text: &str, expected: &[&str]) {
     }
 }
 
-/// The rows of a database without the CPU times of their solves, which no two runs share.
-pub(crate) fn timeless(database: &Database) -> Vec<Row> {
-    let rows = database.rows().iter().cloned();
-    rows.map(|row| Row { cpu_s: 0.0, ..row }).collect()
+/// The rays of a database without the CPU times of their solves, which no two runs share.
+pub(crate) fn timeless(database: &Database) -> Vec<SolvedRay> {
+    let rays = database.rays().iter().cloned();
+    rays.map(|ray| SolvedRay { cpu_s: 0.0, ..ray }).collect()
 }
 
 fn run(command: &mut Command) -> (Output, String) {

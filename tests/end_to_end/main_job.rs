@@ -203,7 +203,7 @@ fn weights_are_tested_on_the_spot_check(work: &Workplace) {
     // No ray of the spot check is in the database.
     let [rays, spot] = ["hinges", "spot-check"].map(|name| {
         let database = Database::read(&work.path(&format!("runs/tiny/{name}.parquet"))).unwrap();
-        let jobs = database.rows().iter().map(|row| row.job.clone());
+        let jobs = database.rays().iter().map(|ray| ray.job.clone());
         jobs.collect::<BTreeSet<String>>()
     });
     assert_eq!((rays.len(), spot.len()), (6, 3));

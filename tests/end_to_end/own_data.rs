@@ -5,7 +5,7 @@
 //! ```
 
 use crate::common::Workplace;
-use dataset::{Database, Row, SplitPlan, Subset};
+use dataset::{Database, SolvedRay, SplitPlan, Subset};
 use hinge::{HingeConstants, HingeSample};
 use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;
@@ -18,33 +18,34 @@ const WEIGHTS: &str = "runs/own.safetensors";
 
 /// Thirty rays of ten states, their energy, forces and damage times `stiffness`.
 fn database(stiffness: f64) -> Database {
-    let rays = (0..30).flat_map(|ray| {
+    let rays = (0..30).map(|ray| {
         let spread = |step: f64| (step * f64::from(ray + 1)).fract();
         let (w_lig, alpha) = (8.0 + 12.0 * spread(0.7549), 60.0 + 30.0 * spread(0.5698));
         let end = [spread(0.4142) - 0.5, 0.5 * spread(0.732) - 0.25, 1.0];
-        (1..=10).map(move |k| {
+        let sample = |k| {
             let lambda = 0.1 * f64::from(k);
             let [u, v, t] = end.map(|value| lambda * value);
             let energy = w_lig * (20.0 * u * u + 10.0 * v * v + 3.0 * t * t + 4.0 * u * t);
-            Row {
-                job: ray.to_string(),
-                design: HingeConstants::PAPER.hinge(w_lig, alpha.to_radians()),
-                material: "PET film 0.5 mm".into(),
-                sample: HingeSample {
-                    lambda,
-                    a: u * w_lig,
-                    s: v * w_lig,
-                    theta: t,
-                    w: stiffness * energy,
-                    f_a: stiffness * (40.0 * u + 4.0 * t),
-                    f_s: stiffness * 20.0 * v,
-                    m_theta: stiffness * w_lig * (6.0 * t + 4.0 * u),
-                    d: stiffness * 0.01 * t * t,
-                    ..HingeSample::default()
-                },
-                ..Row::default()
+            HingeSample {
+                lambda,
+                a: u * w_lig,
+                s: v * w_lig,
+                theta: t,
+                w: stiffness * energy,
+                f_a: stiffness * (40.0 * u + 4.0 * t),
+                f_s: stiffness * 20.0 * v,
+                m_theta: stiffness * w_lig * (6.0 * t + 4.0 * u),
+                d: stiffness * 0.01 * t * t,
+                ..HingeSample::default()
             }
-        })
+        };
+        SolvedRay {
+            job: ray.to_string(),
+            design: HingeConstants::PAPER.hinge(w_lig, alpha.to_radians()),
+            samples: (1..=10).map(sample).collect(),
+            material: "PET film 0.5 mm".into(),
+            ..SolvedRay::default()
+        }
     });
     Database::collect(rays.collect(), &SplitPlan::default()).unwrap()
 }

@@ -3,7 +3,7 @@
 //! restarted, and the database equals the database of one run.
 
 use crate::common::{PROGRAM, Workplace, failure};
-use dataset::{Database, Row, SplitPlan};
+use dataset::{Database, SplitPlan};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
@@ -164,9 +164,8 @@ fn environments(folder: &Path) -> Vec<(String, String)> {
 
 /// The Parquet file of a database with the CPU times, which no two runs share, set to zero.
 fn timeless(path: &Path) -> Vec<u8> {
-    let rows = Database::read(path).unwrap().rows().to_vec();
-    let rows = rows.into_iter().map(|row| Row { cpu_s: 0.0, ..row }).collect();
-    let database = Database::collect(rows, &SplitPlan::default()).unwrap();
+    let rays = crate::common::timeless(&Database::read(path).unwrap());
+    let database = Database::collect(rays, &SplitPlan::default()).unwrap();
     let path = path.with_extension("timeless.parquet");
     database.write(&path, false).unwrap();
     std::fs::read(path).unwrap()

@@ -1,7 +1,7 @@
 //! Time of ten training steps (2560 rows in batches of 256), including set-up and one validation,
 //! for the network sizes of `tiny.toml` and `paper.toml`.
 
-use dataset::{Database, Row, SplitPlan};
+use dataset::{Database, SolvedRay, SplitPlan};
 use hinge::{HingeConstants, HingeSample};
 use train::{TrainingConfig, train};
 
@@ -32,19 +32,16 @@ fn ten_steps(bencher: divan::Bencher, embedding: &[usize]) {
     bencher.bench(|| train(&database, &config, &mut |_| {}));
 }
 
-/// 100 rays of 32 rows, 80 of them for training.
+/// 100 rays of 32 samples, 80 of them for training.
 fn database() -> Database {
-    let rows = (0..3200).map(|index| {
-        let ray = (index / 32) as f64;
-        let lambda = (index % 32 + 1) as f64 / 32.0;
-        Row {
-            job: format!("job-{ray:03}"),
-            design: HingeConstants::PAPER
-                .hinge(15.0 + 10.0 * ray.sin(), 1.5 + 0.7 * (1.7 * ray).sin()),
-            sample: HingeSample {
+    let ray = |index: u32| {
+        let x = f64::from(index);
+        let sample = |k: u32| {
+            let lambda = f64::from(k) / 32.0;
+            HingeSample {
                 lambda,
-                a: lambda * ray.cos(),
-                s: lambda * (2.3 * ray).cos(),
+                a: lambda * x.cos(),
+                s: lambda * (2.3 * x).cos(),
                 theta: lambda,
                 w: 50.0 * lambda * lambda,
                 f_a: lambda,
@@ -52,11 +49,16 @@ fn database() -> Database {
                 m_theta: 100.0 * lambda,
                 d: 0.01 * lambda,
                 ..HingeSample::default()
-            },
+            }
+        };
+        SolvedRay {
+            job: format!("job-{index:03}"),
+            design: HingeConstants::PAPER.hinge(15.0 + 10.0 * x.sin(), 1.5 + 0.7 * (1.7 * x).sin()),
+            samples: (1..=32).map(sample).collect(),
             material: "benchmark".into(),
-            ..Row::default()
+            ..SolvedRay::default()
         }
-    });
-    Database::collect(rows.collect(), &SplitPlan::default())
-        .expect("the rows are finite and of a hundred geometries")
+    };
+    Database::collect((0..100).map(ray).collect(), &SplitPlan::default())
+        .expect("the samples are finite and of a hundred geometries")
 }

@@ -4,11 +4,10 @@
 //! bootstrap of Davison and Hinkley, Bootstrap Methods and their Application, 1997, section 3.8).
 
 use crate::validation::Parity;
-use dataset::Row;
+use dataset::SolvedRay;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use serde::Serialize;
-use std::collections::BTreeMap;
 use std::fmt;
 use surrogate::Surrogate;
 
@@ -32,22 +31,18 @@ impl ErrorInterval {
     /// Minimum number of rays that predict the errors of other rays.
     pub const LEAST_RAYS: usize = 6;
 
-    /// The errors of W and of the three forces together at the rows, whose rays are their jobs;
-    /// `None` below six rays, and if a force is unknown or zero everywhere.
-    pub fn of(surrogate: &Surrogate, rows: &[Row]) -> Option<[Self; 2]> {
-        let parity = Parity::new(surrogate, rows);
-        let points: [Vec<[f64; 2]>; QUANTITIES] =
-            std::array::from_fn(|i| parity.points(i).collect());
-        let mut rays: BTreeMap<&str, Sums> = BTreeMap::new();
-        for (row, state) in rows.iter().enumerate() {
-            let sums = rays.entry(&state.job).or_default();
-            for (i, points) in points.iter().enumerate() {
-                let [target, prediction] = points[row];
-                sums[i][0] += (prediction - target).powi(2);
-                sums[i][1] += target * target;
-            }
-        }
-        let rays: Vec<Sums> = rays.into_values().collect();
+    /// The errors of W and of the three forces together; `None` below six rays, and if a force is
+    /// unknown or zero everywhere.
+    pub fn of(surrogate: &Surrogate, rays: &[SolvedRay]) -> Option<[Self; 2]> {
+        let sums = |ray: &SolvedRay| {
+            let parity = Parity::new(surrogate, std::slice::from_ref(ray));
+            std::array::from_fn(|i| {
+                parity.points(i).fold([0.0; 2], |[errors, squares], [target, prediction]| {
+                    [errors + (prediction - target).powi(2), squares + target * target]
+                })
+            })
+        };
+        let rays: Vec<Sums> = rays.iter().map(sums).collect();
         let found = (rays.len() >= Self::LEAST_RAYS).then(|| intervals(&rays))?;
         let is_known = |found: &Self| found.error.is_finite() && found.interval[1].is_finite();
         found.iter().all(is_known).then_some(found)

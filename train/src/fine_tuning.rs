@@ -18,7 +18,7 @@ use crate::networks::{Networks, layers, options};
 use crate::samples::Scales;
 use crate::validation::Parity;
 use burn::tensor::DType;
-use dataset::{Manifest, Row};
+use dataset::{Manifest, SolvedRay, samples};
 use hinge::HingeConstants;
 use support::{Fault, ensure, refuse};
 use surrogate::{Card, DenseLayer, Layers, Standardisation, Surrogate, feature_names};
@@ -30,11 +30,11 @@ pub(crate) struct Initial {
 }
 
 impl Initial {
-    /// The pretrained weights for the windows of a database, fitted to the training rows, which
+    /// The pretrained weights for the windows of a database, fitted to the training rays, which
     /// include their mirror images.
     pub(crate) fn new(
         pretrained: &Surrogate,
-        rows: &[Row],
+        rays: &[SolvedRay],
         manifest: &Manifest,
     ) -> Result<Self, Fault> {
         if pretrained.card().domain.holes.is_some() && manifest.domain.holes.is_none() {
@@ -44,9 +44,9 @@ impl Initial {
             );
         }
         let pretrained = at_size_of(pretrained, &manifest.hinge);
-        let parity = Parity::new(&pretrained, rows);
+        let parity = Parity::new(&pretrained, rays);
         let names = feature_names(manifest.domain.holes.is_some());
-        let own = Scales::new(rows, manifest.hinge.fillet_ratio, names)?;
+        let own = Scales::new(rays, manifest.hinge.fillet_ratio, names)?;
         let card = pretrained.card();
         let mut layers = pretrained.layers();
         let (from, to) = (&card.standardisation, &own.standardisation);
@@ -78,16 +78,20 @@ fn at_size_of(pretrained: &Surrogate, hinge: &HingeConstants) -> Surrogate {
     pretrained.clone().scaled(factor)
 }
 
-/// Completes the card of a network that starts from pretrained weights and is trained on `rows`. If
+/// Completes the card of a network that starts from pretrained weights and is trained on `rays`. If
 /// all of them are of the law of these weights and in their domain, that domain is kept: the rays
 /// they were trained on count as well.
-pub(crate) fn inherit(card: &mut Card, pretrained: &Surrogate, rows: &[Row]) {
+pub(crate) fn inherit(card: &mut Card, pretrained: &Surrogate, rays: &[SolvedRay]) {
     card.fine_tuned_from = Some(pretrained.hash());
     let pretrained = at_size_of(pretrained, &card.hinge);
     let law = &pretrained.card().material_hash;
-    let inside = |row: &Row| pretrained.domain().contains(&row.design, &row.sample.deformation());
-    if law.is_some() && *law == card.material_hash && rows.iter().all(inside) {
-        card.domain = pretrained.domain().clone();
+    let mut states = samples(rays).map(|(ray, sample)| (&ray.design, sample.deformation()));
+    let domain = pretrained.domain();
+    if law.is_some()
+        && *law == card.material_hash
+        && states.all(|(design, state)| domain.contains(design, &state))
+    {
+        card.domain = domain.clone();
     }
 }
 

@@ -211,18 +211,19 @@ mod tests {
     use crate::samples::{Batch, Scales};
     use crate::validation::Parity;
     use burn::tensor::DType;
-    use dataset::Row;
+    use dataset::SolvedRay;
     use hinge::{HingeConstants, HingeDeformation, HingeSample, NetLigament, TrainingDomain};
     use surrogate::{
         Card, FEATURE_NAMES, FORMAT_VERSION, Surrogate, TestErrors, UNITS, feature_names,
     };
 
-    fn row(index: usize) -> Row {
+    /// A ray of one sample.
+    fn ray(index: usize) -> SolvedRay {
         let wave = |speed: f64| (speed * index as f64 + 0.3).sin();
-        Row {
+        SolvedRay {
             job: format!("{index}"),
             design: HingeConstants::PAPER.hinge(15.0 + 9.0 * wave(1.3), 1.5 + 0.7 * wave(2.9)),
-            sample: HingeSample {
+            samples: vec![HingeSample {
                 a: 2.0 * wave(0.7),
                 s: 2.0 * wave(1.9),
                 theta: 0.6 + 0.6 * wave(3.1),
@@ -233,8 +234,8 @@ mod tests {
                 d: 0.01,
                 d_peak: Some(0.2),
                 ..HingeSample::default()
-            },
-            ..Row::default()
+            }],
+            ..SolvedRay::default()
         }
     }
 
@@ -273,21 +274,21 @@ mod tests {
         Surrogate::from_parts(layers(networks).unwrap(), card).unwrap()
     }
 
-    /// |burn - kernel| / |kernel| over all rows, for W, F_a, F_s, M_theta, D and D_peak.
+    /// |burn - kernel| / |kernel| over all states, for W, F_a, F_s, M_theta, D and D_peak.
     fn disagreement(dtype: DType, several_holes: bool) -> [f64; 6] {
         let features = feature_names(several_holes).len();
         let options = options(dtype);
         let config = TrainingConfig { seed: 1, embedding: vec![64, 64, 32], ..config() };
         let networks = Networks::new(&config, features, true, &options);
-        let mut rows: Vec<Row> = (0..200).map(row).collect();
+        let mut rays: Vec<SolvedRay> = (0..200).map(ray).collect();
         if several_holes {
-            for (i, row) in rows.iter_mut().enumerate() {
-                row.design.fillet_ratio = 0.2 + 0.15 * (2.3 * i as f64).sin();
+            for (i, ray) in rays.iter_mut().enumerate() {
+                ray.design.fillet_ratio = 0.2 + 0.15 * (2.3 * i as f64).sin();
             }
         }
-        let scales = Scales::new(&rows, 0.16, feature_names(several_holes)).unwrap();
+        let scales = Scales::new(&rays, 0.16, feature_names(several_holes)).unwrap();
         let samples: Vec<_> =
-            rows.iter().map(|row| scales.sample(&row.design, &row.sample)).collect();
+            rays.iter().map(|ray| scales.sample(&ray.design, &ray.samples[0])).collect();
         let predicted = predict(&networks, &Batch::new(&samples, features, &options));
         let column = |tensor: &burn::tensor::Tensor<2>, k: usize, scale: f64| -> Vec<f64> {
             let column = tensor.clone().inner().narrow(1, k, 1);
@@ -303,11 +304,11 @@ mod tests {
             column(&predicted.damage, 1, scales.peak.unwrap()),
         ];
         // Burn's moment is the moment of the hinge that the networks see.
-        for (i, row) in rows.iter().enumerate() {
-            let ligament = NetLigament::new(&row.design, scales.hole);
-            burn[3][i] += burn[1][i] * ligament.by_theta(row.sample.theta)[0];
+        for (i, ray) in rays.iter().enumerate() {
+            let ligament = NetLigament::new(&ray.design, scales.hole);
+            burn[3][i] += burn[1][i] * ligament.by_theta(ray.samples[0].theta)[0];
         }
-        let parity = Parity::new(&surrogate(&networks, &scales), &rows);
+        let parity = Parity::new(&surrogate(&networks, &scales), &rays);
         std::array::from_fn(|quantity| {
             let pairs = || burn[quantity].iter().zip(parity.points(quantity));
             let error: f64 = pairs().map(|(burn, [_, predicted])| (burn - predicted).powi(2)).sum();

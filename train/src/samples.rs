@@ -1,14 +1,14 @@
-//! Rows as inputs and targets of the networks: standardised features, scaled targets, batches.
+//! Solved states as inputs and targets of the networks: standardised features, scaled targets, batches.
 
 use crate::affine;
 use burn::tensor::{Tensor, TensorCreationOptions, TensorData};
-use dataset::Row;
+use dataset::SolvedRay;
 use hinge::{HingeDeformation, HingeDesign, HingeSample, NetLigament};
 use std::array::from_fn;
 use support::{Fault, ensure, fault, statistics};
 use surrogate::{Card, FEATURE_NAMES, Standardisation, feature_names, features};
 
-/// The scales of (14) and (15), computed from the training rows.
+/// The scales of (14) and (15), computed from the training rays.
 #[derive(Debug)]
 pub(crate) struct Scales {
     /// Standardisation of the hinges that the networks see; [`NetLigament`].
@@ -21,18 +21,18 @@ pub(crate) struct Scales {
     pub forces: [f64; 3],
     /// D_s: root mean square of D.
     pub damage: f64,
-    /// Root mean square of D_peak over the rows that have it; `None` if no row has a non-zero
+    /// Root mean square of D_peak over the states that have it; `None` if none has a non-zero
     /// D_peak.
     pub peak: Option<f64>,
-    /// Number of rows divided by the number of rows with D_peak. With this weight, a mean over all
-    /// rows is the mean over the rows with D_peak.
+    /// Number of states divided by the number of those with D_peak. With this weight, a mean over
+    /// all states is the mean over the states with D_peak.
     pub peak_weight: f64,
 }
 
 /// Maximum number of features.
 const FEATURES: usize = FEATURE_NAMES.len();
 
-/// One row: inputs of the networks and targets of (15), both of order one.
+/// One state: inputs of the networks and targets of (15), both of order one.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sample {
     /// Standardised xi(eps, g). The networks see as many of them as the standardisation has.
@@ -69,26 +69,32 @@ impl Scales {
     /// Computes the scales; an error if a feature is constant, or a target is zero or has outliers.
     ///
     /// `hole` is the hole of the hinges that the networks see, over w_lig, and `names` are their
-    /// features. The rows include their mirror images.
-    pub(crate) fn new(rows: &[Row], hole: f64, names: &[&'static str]) -> Result<Self, Fault> {
-        let count = rows.len() as f64;
-        let root_mean_square = |target: &'static str, value: fn(&Row) -> f64| {
-            let scale = statistics::root_mean_square(rows.iter().map(value));
-            refuse_outlier(rows, target, value)?;
+    /// features. The rays include their mirror images.
+    pub(crate) fn new(
+        rays: &[SolvedRay],
+        hole: f64,
+        names: &[&'static str],
+    ) -> Result<Self, Fault> {
+        let states = || dataset::samples(rays);
+        let samples = || states().map(|(_, sample)| sample);
+        let count = samples().count() as f64;
+        let root_mean_square = |target: &'static str, value: fn(&HingeSample) -> f64| {
+            let scale = statistics::root_mean_square(samples().map(value));
+            refuse_outlier(rays, target, value)?;
             if scale > 0.0 && scale.is_finite() {
                 Ok(scale)
             } else {
                 Err(fault!(
-                    "the root mean square of {target} over the training rows is {scale}, so it cannot be fitted; check the \
+                    "the root mean square of {target} over the training states is {scale}, so it cannot be fitted; check the \
                      database"
                 ))
             }
         };
-        let xi: Vec<[f64; FEATURES]> = (rows.iter())
-            .map(|row| {
-                let ligament = NetLigament::new(&row.design, hole);
-                let state = ligament.deformation(&row.sample.deformation());
-                features(&ligament.design(&row.design), &state)
+        let xi: Vec<[f64; FEATURES]> = states()
+            .map(|(ray, sample)| {
+                let ligament = NetLigament::new(&ray.design, hole);
+                let state = ligament.deformation(&sample.deformation());
+                features(&ligament.design(&ray.design), &state)
             })
             .collect();
         let mean: Vec<f64> =
@@ -104,27 +110,27 @@ impl Scales {
             // size.
             ensure!(
                 std[k] > 1e-12 * mean[k].abs() && std[k].is_finite(),
-                "the feature `{feature}` is {} in every training row, so the network cannot \
+                "the feature `{feature}` is {} in every training state, so the network cannot \
                      learn its effect; vary it in the campaign",
                 mean[k]
             );
         }
-        let with_peak = rows.iter().filter(|row| row.sample.d_peak.is_some()).count();
+        let with_peak = samples().filter(|sample| sample.d_peak.is_some()).count();
         let peak_weight = count / (with_peak as f64).max(1.0);
         let mut standardisation = Standardisation { mean, std };
         affine::centre(&mut standardisation);
         Ok(Self {
             standardisation,
             hole,
-            energy: root_mean_square("W", |row| row.sample.w)?,
+            energy: root_mean_square("W", |sample| sample.w)?,
             forces: [
-                root_mean_square("F_a", |row| row.sample.f_a)?,
-                root_mean_square("F_s", |row| row.sample.f_s)?,
-                root_mean_square("M_theta", |row| row.sample.m_theta)?,
+                root_mean_square("F_a", |sample| sample.f_a)?,
+                root_mean_square("F_s", |sample| sample.f_s)?,
+                root_mean_square("M_theta", |sample| sample.m_theta)?,
             ],
-            damage: root_mean_square("D", |row| row.sample.d)?,
-            // The mean over all rows counts rows without D_peak as zero.
-            peak: if rows.iter().any(|row| d_peak(row) != 0.0) {
+            damage: root_mean_square("D", |sample| sample.d)?,
+            // The mean over all states counts those without D_peak as zero.
+            peak: if samples().any(|sample| d_peak(sample) != 0.0) {
                 Some(root_mean_square("D_peak", d_peak)? * peak_weight.sqrt())
             } else {
                 None
@@ -133,14 +139,14 @@ impl Scales {
         })
     }
 
-    /// The scales of trained weights; the scales of the forces are computed from the rows.
-    pub(crate) fn from_card(card: &Card, rows: &[Row]) -> Result<Self, Fault> {
+    /// The scales of trained weights; the scales of the forces are computed from the rays.
+    pub(crate) fn from_card(card: &Card, rays: &[SolvedRay]) -> Result<Self, Fault> {
         Ok(Self {
             standardisation: card.standardisation.clone(),
             energy: card.energy_scale,
             damage: card.damage_scale,
             peak: card.peak_scale,
-            ..Self::new(rows, card.hinge.fillet_ratio, feature_names(card.domain.holes.is_some()))?
+            ..Self::new(rays, card.hinge.fillet_ratio, feature_names(card.domain.holes.is_some()))?
         })
     }
 
@@ -180,27 +186,32 @@ impl Scales {
 /// by a factor of ten; an erroneous solve has larger errors, by powers of ten.
 const OUTLIER: f64 = 100.0;
 
-fn refuse_outlier(rows: &[Row], target: &'static str, value: fn(&Row) -> f64) -> Result<(), Fault> {
-    let mut sorted: Vec<f64> = rows.iter().map(|row| value(row).abs()).collect();
+fn refuse_outlier(
+    rays: &[SolvedRay],
+    target: &'static str,
+    value: fn(&HingeSample) -> f64,
+) -> Result<(), Fault> {
+    let states = || dataset::samples(rays);
+    let mut sorted: Vec<f64> = states().map(|(_, sample)| value(sample).abs()).collect();
     sorted.sort_by(f64::total_cmp);
     let usual = sorted.get(9 * sorted.len() / 10).copied().unwrap_or(0.0);
-    let outlier = rows.iter().find(|row| value(row).abs() > OUTLIER * usual);
+    let outlier = states().find(|(_, sample)| value(sample).abs() > OUTLIER * usual);
     match outlier.filter(|_| usual > 0.0) {
-        Some(row) => Err(fault!(
+        Some((ray, sample)) => Err(fault!(
             "job {}, lambda = {}: {target} = {:e} is {:.0} times the 90 % quantile of the training \
-             rows and would dominate the loss; check that job or remove its rows",
-            row.job,
-            row.sample.lambda,
-            value(row),
-            value(row).abs() / usual
+             states and would dominate the loss; check that job or remove it",
+            ray.job,
+            sample.lambda,
+            value(sample),
+            value(sample).abs() / usual
         )),
         None => Ok(()),
     }
 }
 
-/// D_peak of a row; zero if it is unknown.
-fn d_peak(row: &Row) -> f64 {
-    row.sample.d_peak.unwrap_or(0.0)
+/// D_peak; zero if it is unknown.
+fn d_peak(sample: &HingeSample) -> f64 {
+    sample.d_peak.unwrap_or(0.0)
 }
 
 impl Batch {

@@ -13,7 +13,7 @@ use burn::grad_clipping::GradientClippingConfig;
 use burn::module::ParamGroup;
 use burn::optim::{AdamConfig, GradientsParams, ModuleOptimizer, MuonConfig};
 use burn::tensor::{DType, TensorCreationOptions};
-use dataset::{Database, Manifest, Row, Subset, with_mirrored};
+use dataset::{Database, Manifest, SolvedRay, Subset, samples, with_mirrored};
 use hinge::TrainingDomain;
 use rand::SeedableRng;
 use rand::seq::SliceRandom;
@@ -77,11 +77,11 @@ pub struct Training {
     elapsed_s: f64,
 }
 
-/// The rows of the three parts.
+/// The rays of the three parts.
 struct Parts {
-    training: Vec<Row>,
-    validation: Vec<Row>,
-    test: Vec<Row>,
+    training: Vec<SolvedRay>,
+    validation: Vec<SolvedRay>,
+    test: Vec<SolvedRay>,
 }
 
 /// Fits (14) to the database by minimising (15); section 2.4.
@@ -101,7 +101,7 @@ pub fn train(
 }
 
 impl Training {
-    /// Scales the rows of the database, and initialises or loads the networks.
+    /// Scales the states of the database, and initialises or loads the networks.
     pub fn new<'a>(
         data: impl Into<TrainingData<'a>>,
         config: &TrainingConfig,
@@ -112,27 +112,27 @@ impl Training {
         let data: TrainingData = data.into();
         let parts = Parts::new(data.database)?;
         let manifest = data.database.manifest();
-        let rows = with_mirrored(&parts.training);
+        let rays = with_mirrored(&parts.training);
         let names = feature_names(manifest.domain.holes.is_some());
         let (mut layers, mut saved) = (None, None);
         let scales = match start {
-            Start::Fresh => Scales::new(&rows, manifest.hinge.fillet_ratio, names)?,
+            Start::Fresh => Scales::new(&rays, manifest.hinge.fillet_ratio, names)?,
             Start::Weights(pretrained) => {
                 check_pretrained(pretrained, config)?;
-                let initial = Initial::new(pretrained, &rows, manifest)?;
+                let initial = Initial::new(pretrained, &rays, manifest)?;
                 layers = Some(initial.layers);
                 initial.scales
             }
             Start::State { state, .. } => {
                 let state = saved.insert(TrainingState::read(state)?);
-                Scales::from_card(&state.progress.card, &rows)?
+                Scales::from_card(&state.progress.card, &rays)?
             }
         };
-        let mut card = card(manifest, &rows, &scales, config)?;
+        let mut card = card(manifest, &rays, &scales, config)?;
         card.distillation = data.distillation.map(|median| median.record.clone());
         match start {
             Start::Fresh => {}
-            Start::Weights(pretrained) => inherit(&mut card, pretrained, &rows),
+            Start::Weights(pretrained) => inherit(&mut card, pretrained, &rays),
             Start::State { pretrained, .. } => {
                 card.fine_tuned_from = pretrained.map(Surrogate::hash);
             }
@@ -142,7 +142,7 @@ impl Training {
             Some(layers) => Networks::from_layers(layers, &options),
             None => Networks::new(config, scales.features(), scales.peak.is_some(), &options),
         };
-        let solved = parts.training.iter().map(|row| (&row.design, &row.sample));
+        let solved = samples(&parts.training).map(|(ray, sample)| (&ray.design, sample));
         let distilled = data.distillation.into_iter();
         let distilled = distilled.flat_map(|distillation| &distillation.samples);
         let distilled = distilled.map(|(design, sample)| (design, sample));
@@ -179,7 +179,7 @@ impl Training {
         &self.history
     }
 
-    /// One pass over the training rows, and the states of the distillation.
+    /// One pass over the training states, and the states of the distillation.
     pub fn epoch(&mut self) -> Result<Epoch, Fault> {
         let epoch = self.history.len() + 1;
         let training_loss = self.descend(epoch)?;
@@ -300,8 +300,8 @@ impl Training {
 impl Parts {
     fn new(database: &Database) -> Result<Self, Fault> {
         let part = |part, name| match database.part(part) {
-            rows if rows.is_empty() => Err(no_rows(name)),
-            rows => Ok(rows),
+            rays if rays.is_empty() => Err(no_rays(name)),
+            rays => Ok(rays),
         };
         Ok(Self {
             training: part(Subset::Training, "training")?,
@@ -311,19 +311,18 @@ impl Parts {
     }
 }
 
-fn no_rows(part: &str) -> Fault {
-    fault!("the {part} part of the split has no rows; collect more geometries")
+fn no_rays(part: &str) -> Fault {
+    fault!("the {part} part of the split has no rays; collect more geometries")
 }
 
 /// The card before training; the test errors are added at the end.
 fn card(
     manifest: &Manifest,
-    training: &[Row],
+    training: &[SolvedRay],
     scales: &Scales,
     config: &TrainingConfig,
 ) -> Result<Card, Fault> {
-    let states = training.iter();
-    let states = states.map(|row| (row.design, row.sample.deformation()));
+    let states = samples(training).map(|(ray, sample)| (ray.design, sample.deformation()));
     let domain = TrainingDomain::covering(states);
     Ok(Card {
         format_version: FORMAT_VERSION,
@@ -338,7 +337,7 @@ fn card(
         damage_scale: scales.damage,
         peak_scale: scales.peak,
         damage_sharpness: DAMAGE_SHARPNESS,
-        domain: domain.ok_or_else(|| no_rows("training"))?,
+        domain: domain.ok_or_else(|| no_rays("training"))?,
         hinge: manifest.hinge,
         material: manifest.material.clone(),
         material_hash: the_only(&manifest.material_hashes),
@@ -359,7 +358,7 @@ fn card(
     })
 }
 
-/// The common hash of all rows; `None` if there are several or it is unknown.
+/// The common hash of all rays; `None` if there are several or it is unknown.
 fn the_only(hashes: &BTreeSet<String>) -> Option<String> {
     let mut hashes = hashes.iter();
     match (hashes.next(), hashes.next()) {

@@ -1,50 +1,54 @@
-//! Errors of a surrogate on rows that are not used in training, measured with the exported float64
+//! Errors of a surrogate on rays that are not used in training, measured with the exported float64
 //! networks.
 
 use crate::config::{DAMAGE_WEIGHT, ENERGY_WEIGHT};
 use crate::samples::Scales;
-use dataset::{ComparedState, Row};
+use dataset::{ComparedState, SolvedRay, samples};
 use std::array::from_fn;
 use std::iter::zip;
 use support::Point;
 use support::statistics::root_mean_square;
 use surrogate::{FitError, SpotCheck, Surrogate, TestErrors};
 
-/// Predictions of a surrogate with their targets, the values of the finite elements, one state a
-/// row.
+/// Predictions of a surrogate with their targets, the values of the finite elements, state by
+/// state.
 #[derive(Debug, Default)]
 pub struct Parity {
-    /// Targets (`reference`) and predictions (`value`), in the order of the rows. Quantities that
+    /// Targets (`reference`) and predictions (`value`), in the order of the rays. Quantities that
     /// are unknown, or that the surrogate does not predict, are NaN.
     pub states: Vec<ComparedState>,
 }
 
-/// The rows inside the training domain of a surrogate.
-pub fn inside(surrogate: &Surrogate, rows: &[Row]) -> Vec<Row> {
-    let inside = |row: &&Row| surrogate.contains(&row.design, &row.sample.deformation());
-    rows.iter().filter(inside).cloned().collect()
+/// The rays with their samples inside the training domain of a surrogate.
+pub fn inside(surrogate: &Surrogate, rays: &[SolvedRay]) -> Vec<SolvedRay> {
+    let inside = |ray: &SolvedRay| {
+        let mut inside = ray.clone();
+        inside.samples.retain(|sample| surrogate.contains(&ray.design, &sample.deformation()));
+        inside
+    };
+    rays.iter().map(inside).filter(|ray| !ray.samples.is_empty()).collect()
 }
 
 /// The errors of a surrogate at random states on windows of a mesh tier, for its card.
-pub fn spot_check(surrogate: &Surrogate, rows: &[Row], tier: &str) -> SpotCheck {
-    let inside = inside(surrogate, rows);
-    let widths = inside.iter().map(|row| row.design.w_lig);
+pub fn spot_check(surrogate: &Surrogate, rays: &[SolvedRay], tier: &str) -> SpotCheck {
+    let inside = inside(surrogate, rays);
+    let widths = samples(&inside).map(|(ray, _)| ray.design.w_lig);
     SpotCheck {
-        errors: Parity::new(surrogate, rows).errors(),
-        inside: inside.len(),
+        errors: Parity::new(surrogate, rays).errors(),
+        inside: samples(&inside).count(),
         tier: Some(tier.to_owned()),
         forces: Parity::new(surrogate, &inside).force_errors(widths),
     }
 }
 
 impl Parity {
-    /// Evaluates the surrogate at every row.
-    pub fn new(surrogate: &Surrogate, rows: &[Row]) -> Self {
+    /// Evaluates the surrogate at every sample.
+    pub fn new(surrogate: &Surrogate, rays: &[SolvedRay]) -> Self {
         let (designs, deformations): (Vec<_>, Vec<_>) =
-            rows.iter().map(|row| (row.design, row.sample.deformation())).unzip();
+            samples(rays).map(|(ray, sample)| (ray.design, sample.deformation())).unzip();
         let predictions = surrogate.samples(&designs, &deformations);
-        let states = zip(&predictions, rows)
-            .map(|(prediction, row)| ComparedState::new(prediction, &row.sample));
+        let states = zip(&predictions, samples(rays))
+            .map(|(prediction, (_, sample))| ComparedState::new(prediction, sample));
         Self { states: states.collect() }
     }
 
@@ -76,7 +80,7 @@ impl Parity {
         (!errors.is_empty()).then(|| from_fn(rms))
     }
 
-    /// The loss (15) in the scales of the training rows.
+    /// The loss (15) in the scales of the training rays.
     pub(crate) fn loss(&self, scales: &Scales) -> f64 {
         let [f_a, f_s, m_theta] = scales.forces;
         let force_weight = (1.0 - ENERGY_WEIGHT) / 3.0;

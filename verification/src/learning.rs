@@ -4,9 +4,9 @@
 //! After each round weights are trained on all rays so far, and tested at random states of rays
 //! that no training contains.
 
-use crate::rows::collected;
+use crate::solved_rays::collected;
 use crate::verification_error::{VerificationError, every_ray_failed};
-use dataset::{Database, Row};
+use dataset::{Database, SolvedRay};
 use fe_driver::{Campaign, CampaignProgress, RunOptions, Shard, Solver, run, status};
 use std::collections::VecDeque;
 use std::path::Path;
@@ -30,7 +30,7 @@ pub struct LearningTask<'a> {
     /// Number of rays of the first round.
     pub first_rays: usize,
     /// States at which the weights of every round are tested.
-    pub spot: &'a [Row],
+    pub spot: &'a [SolvedRay],
     /// The errors that are small enough.
     pub accuracy: Accuracy,
     /// No ray is started after this time.
@@ -112,7 +112,7 @@ impl<'a> Learning<'a> {
         Ok(Self { task, solved, counts, trained: 0, is_latest: false, end: None })
     }
 
-    /// Solves the rays of the next round. Returns the rows of all rays so far, to train weights on,
+    /// Solves the rays of the next round. Returns the database of all rays so far, to train weights on,
     /// with the number of their rays, or why there is no further round.
     pub fn solve(
         &mut self,

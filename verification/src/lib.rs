@@ -3,7 +3,7 @@
 //!
 //! | task | entry point |
 //! |---|---|
-//! | rows of a database from solved windows, and back | [`rows`], [`collected`], [`collected_windows`] |
+//! | the database of a campaign | [`collected`] |
 //! | a sheet in equilibrium with the forces of finite elements | [`balanced`], [`SheetErrors`] |
 //! | a design searched for with finite elements for its hinges | [`final_design`] |
 //! | the whole sheet, its panels rigid or meshed | [`SheetTask`], [`SheetCheck`] |
@@ -40,7 +40,7 @@
 //! let inside = DrawnStates { domain: weights.domain(), constants: &weights.card().hinge, regime: Tier::Tiny.regime() };
 //! let paths = random_paths(inside, 8, 4, 0);
 //! let check = spot_check(&windows, &paths, &film, Tier::Tiny)?;
-//! assert_eq!((check.rows.len(), check.unsolved.len()), (8, 0));
+//! assert_eq!((check.rays.len(), check.unsolved.len()), (2, 0));
 //! # Ok::<_, Box<dyn std::error::Error>>(())
 //! ```
 
@@ -51,11 +51,11 @@ mod element_windows;
 mod final_design;
 mod finished_panel;
 mod learning;
-mod rows;
 mod sheet_check;
 mod sheet_errors;
 mod sheet_page;
 mod sheet_task;
+mod solved_rays;
 mod verification_error;
 mod visited;
 mod whole_sheet;
@@ -66,13 +66,12 @@ pub use balanced_sheet::{
 pub use element_windows::{ElementWindows, UnsolvedHinge, verification_tier};
 pub use final_design::{final_design, most_cpu_seconds};
 pub use learning::{Accuracy, Learning, LearningEnd, LearningRound, LearningTask};
-pub use rows::{
-    SCALE, SpotStates, collected, collected_windows, distillation_states, rows, spot_check,
-    spread_table,
-};
 pub use sheet_check::{HingeCheck, PanelCheck, SheetCheck, StateCheck};
 pub use sheet_errors::SheetErrors;
 pub use sheet_task::SheetTask;
+pub use solved_rays::{
+    SCALE, SpotStates, collected, distillation_states, spot_check, spread_table,
+};
 pub use verification_error::{VerificationError, every_ray_failed};
 pub use visited::visited_paths;
 pub use whole_sheet::{SheetCost, usual_sheet_tier};

@@ -1,6 +1,5 @@
 //! Errors of this crate.
 
-use dataset::DatasetError;
 use design::objective::design_problem::DesignError;
 use fe_driver::SolveListError;
 use std::path::Path;
@@ -12,8 +11,6 @@ use support::{Fault, FileError, fault};
 pub enum VerificationError {
     #[error(transparent)]
     Solve(#[from] SolveListError),
-    #[error(transparent)]
-    Dataset(#[from] DatasetError),
     #[error(transparent)]
     Design(#[from] DesignError),
     #[error("cannot use {0}")]

@@ -1,19 +1,21 @@
 //! Collecting, writing and reading a database, and the errors on the way.
 
-use crate::common::{collect, row, rows};
-use dataset::{Database, Fidelity, Rejection, Row, Subset};
+use crate::common::{collect, ray, rays, sample};
+use dataset::{Database, Fidelity, Rejection, SolvedRay, Subset, samples};
 use mesher::Tier;
 use std::path::{Path, PathBuf};
 use support::sealed_json;
 use tempfile::TempDir;
+use testkit::changed;
 
-type Change = fn(&mut Row);
+type Change = fn(&mut SolvedRay);
 
 fn written() -> (TempDir, PathBuf, Database) {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("film.parquet");
-    let database = collect(rows()).unwrap();
+    let database = collect(rays()).unwrap();
     database.write(&path, false).unwrap();
+    assert!(database.write(&path, false).unwrap_err().to_string().contains("already exists"));
     (folder, path, database)
 }
 
@@ -29,9 +31,9 @@ fn files(folder: &Path) -> Vec<String> {
 fn a_written_database_is_read_back_bit_exactly() {
     let (folder, path, database) = written();
     let read = Database::read(&path).unwrap();
-    assert_eq!(read.rows(), database.rows());
+    assert_eq!(read.rays(), database.rays());
     assert_eq!(read.manifest(), database.manifest());
-    assert_eq!(read.rows().len(), 50);
+    assert_eq!(samples(read.rays()).count(), 50);
     assert_eq!(files(folder.path()), ["film.json", "film.parquet"]);
     let manifest = read.manifest();
     assert_eq!((manifest.rays, manifest.partial_rays, manifest.geometries), (10, 1, 10));
@@ -43,15 +45,12 @@ fn a_written_database_is_read_back_bit_exactly() {
 /// Holes of several radii are a range next to the paper's hole, in whose measures the domain is.
 #[test]
 fn holes_of_several_radii_are_a_range() {
-    let one = collect(rows()).unwrap();
+    let one = collect(rays()).unwrap();
     assert_eq!(one.manifest().domain.holes, None);
-    let several: Vec<Row> = (rows().into_iter())
-        .map(|mut row| {
-            let odd = row.job.ends_with(['1', '3', '5', '7', '9']);
-            row.design.fillet_ratio = if odd { 0.3 } else { 0.05 };
-            row
-        })
-        .collect();
+    let several = changed(rays(), |ray| {
+        let odd = ray.job.ends_with(['1', '3', '5', '7', '9']);
+        ray.design.fillet_ratio = if odd { 0.3 } else { 0.05 };
+    });
     let several = collect(several).unwrap();
     assert_eq!(several.manifest().domain.holes, Some([0.05, 0.3]));
     assert_eq!(several.manifest().hinge.fillet_ratio, 0.16);
@@ -60,34 +59,34 @@ fn holes_of_several_radii_are_a_range() {
 
 #[test]
 fn rows_are_sorted_by_job_and_lambda_so_that_the_file_is_the_same() {
-    let database = collect(rows()).unwrap();
-    let mut shuffled = rows();
+    let database = collect(rays()).unwrap();
+    let mut shuffled = changed(rays(), |ray| ray.samples.reverse());
     shuffled.reverse();
     let again = collect(shuffled).unwrap();
     assert_eq!(database.manifest().hash, again.manifest().hash);
-    let lambdas: Vec<f64> = database.rows()[..5].iter().map(|row| row.sample.lambda).collect();
-    assert_eq!(lambdas, [0.2, 0.4, 0.6, 0.8, 1.0]);
+    let lambdas = database.rays()[0].samples.iter().map(|sample| sample.lambda);
+    assert_eq!(lambdas.collect::<Vec<_>>(), [0.2, 0.4, 0.6, 0.8, 1.0]);
 }
 
 #[test]
-fn the_parts_contain_every_row_exactly_once() {
-    let database = collect(rows()).unwrap();
+fn the_parts_contain_every_ray_exactly_once() {
+    let database = collect(rays()).unwrap();
     let parts = [Subset::Training, Subset::Validation, Subset::Test].map(|it| database.part(it));
-    assert_eq!(parts.each_ref().map(Vec::len), [40, 5, 5]);
-    let mut all: Vec<Row> = parts.into_iter().flatten().collect();
+    assert_eq!(parts.each_ref().map(Vec::len), [8, 1, 1]);
+    let mut all = parts.concat();
     all.sort_by(|a, b| a.job.cmp(&b.job));
-    assert_eq!(all, database.rows());
+    assert_eq!(all, database.rays());
 }
 
 #[test]
 fn rejected_rows_are_counted_and_printed() {
-    let mut rows = rows();
-    rows[3].sample.w = -1.0;
-    rows[4].sample.energy_residual = 0.5;
-    rows[5].sample.energy_residual = 0.5;
-    rows[6].sample.m_theta = f64::NAN;
-    let database = collect(rows).unwrap();
-    assert_eq!(database.rows().len(), 46);
+    let mut rays = rays();
+    rays[0].samples[3].w = -1.0;
+    rays[0].samples[4].energy_residual = 0.5;
+    rays[1].samples[0].energy_residual = 0.5;
+    rays[1].samples[1].m_theta = f64::NAN;
+    let database = collect(rays).unwrap();
+    assert_eq!(samples(database.rays()).count(), 46);
     let rejected: Vec<_> = database.manifest().rejected.iter().collect();
     assert_eq!(
         rejected,
@@ -103,39 +102,35 @@ fn rejected_rows_are_counted_and_printed() {
 
 #[test]
 fn an_empty_database_is_an_error() {
-    let message = |rows| collect(rows).unwrap_err().to_string();
+    let message = |rays| collect(rays).unwrap_err().to_string();
     assert_eq!(message(vec![]), "no rows: run the campaign before collecting it");
-    let bad = vec![Row { cpu_s: f64::NAN, ..row(0, 1.0) }];
-    assert_eq!(message(bad), "no rows: 1 were rejected since a number is not finite");
+    let bad = vec![SolvedRay { cpu_s: f64::NAN, ..ray(0) }];
+    assert_eq!(message(bad), "no rows: 5 were rejected since a number is not finite");
 }
 
 #[test]
-fn inconsistent_rows_are_an_error() {
+fn inconsistent_rays_are_an_error() {
     let changes: [(Change, &str); 6] = [
-        (|row| row.material = "steel".into(), "material"),
-        (|row| row.material_hash = "57ee1".into(), "material_hash"),
-        (|row| row.settings_hash = "07e4".into(), "settings_hash"),
-        (|row| row.tier = Fidelity::Solved(Tier::Tiny), "tier"),
-        (|row| row.design.kerf = 0.1, "kerf"),
-        (|row| row.design.r_win = 70.0, "r_win"),
+        (|ray| ray.material = "steel".into(), "material"),
+        (|ray| ray.material_hash = "57ee1".into(), "material_hash"),
+        (|ray| ray.settings_hash = "07e4".into(), "settings_hash"),
+        (|ray| ray.tier = Fidelity::Solved(Tier::Tiny), "tier"),
+        (|ray| ray.design.kerf = 0.1, "kerf"),
+        (|ray| ray.design.r_win = 70.0, "r_win"),
     ];
     for (change, expected) in changes {
-        let mut rows = rows();
-        change(&mut rows[0]);
-        let error = collect(rows).unwrap_err().to_string();
+        let mut rays = rays();
+        change(&mut rays[0]);
+        let error = collect(rays).unwrap_err().to_string();
         assert!(error.starts_with(&format!("job job-09: {expected} = ")), "{error}");
     }
-    let twice = rows().into_iter().chain([row(3, 0.4)]).collect();
+    let twice = [rays(), vec![ray(3)]].concat();
     let error = collect(twice).unwrap_err().to_string();
-    assert!(error.starts_with("job job-03: lambda = 0.4 occurs twice"), "{error}");
-}
-
-#[test]
-fn an_existing_database_is_replaced_only_on_request() {
-    let (_folder, path, database) = written();
-    let error = database.write(&path, false).unwrap_err().to_string();
-    assert!(error.contains("already exists"), "{error}");
-    database.write(&path, true).unwrap();
+    assert_eq!(error, "job job-03 occurs twice; was it collected twice?");
+    let mut rays = rays();
+    rays[6].samples.push(sample(0.4));
+    let error = collect(rays).unwrap_err().to_string();
+    assert_eq!(error, "job job-03: lambda = 0.4 occurs twice");
 }
 
 #[test]
@@ -169,10 +164,10 @@ fn a_missing_malformed_or_newer_manifest_is_an_error() {
 
 #[test]
 fn a_material_law_without_a_hash_is_not_known() {
-    let law = |rows: Vec<Row>| collect(rows).unwrap().to_string();
-    let unknown = rows().into_iter().map(|row| Row { material_hash: String::new(), ..row });
-    assert!(law(unknown.collect()).contains("material law not known"));
-    assert!(law(rows()).contains("material law f11f"));
+    let law = |rays| collect(rays).unwrap().to_string();
+    let unknown = changed(rays(), |ray| ray.material_hash.clear());
+    assert!(law(unknown).contains("material law not known"));
+    assert!(law(rays()).contains("material law f11f"));
 }
 
 /// The error of reading these bytes with a manifest that contains their hash.
@@ -213,20 +208,19 @@ fn a_malformed_file_is_an_error_even_if_its_hash_is_correct() {
 
 #[test]
 fn a_single_geometry_is_an_error() {
-    let mut one = rows();
-    one.iter_mut().for_each(|row| row.design = rows()[0].design);
-    for rows in [one, vec![row(0, 1.0)]] {
-        let error = collect(rows).unwrap_err().to_string();
+    let one = changed(rays(), |other| other.design = ray(9).design);
+    for rays in [one, vec![ray(0)]] {
+        let error = collect(rays).unwrap_err().to_string();
         assert!(error.starts_with("1 geometries cannot be split"), "{error}");
     }
 }
 
 #[test]
-fn the_rows_of_a_shipped_database_give_its_hash_and_its_split() {
+fn the_rays_of_a_shipped_database_give_its_hash_and_its_split() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../data/polypropylene-3mm");
     let shipped = Database::read(&folder.join("hinges.parquet")).unwrap();
     let manifest = shipped.manifest();
-    let again = Database::collect(shipped.rows().to_vec(), &manifest.split_plan).unwrap();
+    let again = Database::collect(shipped.rays().to_vec(), &manifest.split_plan).unwrap();
     let found = again.manifest();
     assert_eq!([&found.hash, &found.split_hash], [&manifest.hash, &manifest.split_hash]);
     assert_eq!((found.tier, &found.finer), (manifest.tier, &manifest.finer));

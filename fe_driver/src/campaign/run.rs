@@ -1,11 +1,9 @@
 //! Running a campaign: the list of its solves, and a ledger of them.
 
 use crate::{
-    Campaign, CampaignFolder, EventLog, FailureKind, Index, Job, Shard, SolveEvent, SolveListError,
-    SolveRecord, Solver, Tally, ToolVersions, WindowSolve, Workers, now,
+    Campaign, CampaignFolder, EventLog, Index, Job, Shard, SolveEvent, SolveListError, SolveRecord,
+    SolvedRay, Solver, Tally, ToolVersions, WindowSolve, Workers, now,
 };
-use hinge::HingeSample;
-use mesher::Tier;
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
@@ -145,23 +143,6 @@ fn tally(jobs: &[Job], records: &[Option<SolveRecord>]) -> Tally {
 
 // Recreates job folders from collected samples, so that collected jobs are not solved again.
 
-/// What a database contains of a solve.
-#[derive(Clone, Debug, PartialEq)]
-pub struct CollectedWindow {
-    /// Id of the solve.
-    pub id: String,
-    /// Versions of the programs that solved it.
-    pub tools: ToolVersions,
-    /// Tier on which the samples were solved.
-    pub solved_tier: Tier,
-    /// One sample per converged increment.
-    pub samples: Vec<HingeSample>,
-    /// Solver CPU time over all attempts (s).
-    pub cpu_seconds: f64,
-    /// Why the samples end before the end of the path; `None` for a complete path.
-    pub failure: Option<FailureKind>,
-}
-
 /// Numbers of jobs that were restored, already present, and foreign.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Restored {
@@ -180,66 +161,62 @@ pub struct Restored {
 pub fn restore(
     campaign: &Campaign,
     folder: &Path,
-    collected: &[CollectedWindow],
+    collected: &[SolvedRay],
 ) -> Result<Restored, SolveListError> {
     let mut restored = Restored::default();
     let Some(first) = collected.first() else {
         return Ok(restored);
     };
     // Jobs of another campaign may have been solved with other versions of gmsh and ccx.
-    let mut tools: Vec<&ToolVersions> = Vec::new();
-    for window in collected {
-        if !tools.contains(&&window.tools) {
-            tools.push(&window.tools);
-        }
-    }
+    let mut tools: Vec<&ToolVersions> = collected.iter().map(|ray| &ray.tools).collect();
+    tools.dedup();
     let solves_with = |tools| {
         let solves: Vec<WindowSolve> = campaign.solves(tools).collect();
         let index = Index::new(&campaign.name, &solves);
         let ids: HashSet<&String> = index.jobs.iter().collect();
-        let known = collected.iter().any(|window| ids.contains(&window.id));
+        let known = collected.iter().any(|ray| ids.contains(&ray.job));
         known.then_some((index, solves))
     };
     let Some((index, solves)) = tools.into_iter().find_map(solves_with) else {
         refuse!(
             "none of the jobs belongs to the campaign (the first is {}): they were solved with other settings, with another \
      version of gmsh or ccx, or for another campaign",
-            first.id
+            first.job
         );
     };
     let solves: HashMap<_, _> = index.jobs.iter().zip(solves).collect();
     let folder = CampaignFolder(folder.to_owned());
     let (store, mut history) = (folder.store(), folder.enter(Shard::WHOLE, &index)?);
-    for window in collected {
-        let Some(solve) = solves.get(&window.id) else {
+    for ray in collected {
+        let Some(solve) = solves.get(&ray.job) else {
             restored.foreign += 1;
             continue;
         };
-        let home = store.solve(&window.id);
+        let home = store.solve(&ray.job);
         if home.ended::<WindowSolve>()?.is_some_and(|record| record.is_closed()) {
             restored.there += 1;
             continue;
         }
         home.write_solve(solve)?;
-        let rows_hash = home.write_samples(&window.samples)?;
-        home.write_record(&record(window, rows_hash))?;
-        history.note(&window.id, &SolveEvent::Restored)?;
+        let rows_hash = home.write_samples(&ray.samples)?;
+        home.write_record(&record(ray, rows_hash))?;
+        history.note(&ray.job, &SolveEvent::Restored)?;
         restored.written += 1;
     }
     Ok(restored)
 }
 
 /// The record of a solve that was made elsewhere. The database does not contain its wall time.
-fn record(window: &CollectedWindow, rows_hash: String) -> SolveRecord {
+fn record(ray: &SolvedRay, rows_hash: String) -> SolveRecord {
     SolveRecord {
-        failure: window.failure,
-        message: (window.failure).map(|_| "restored from a database".to_owned()),
+        failure: ray.failure,
+        message: (ray.failure).map(|_| "restored from a database".to_owned()),
         attempts: 1,
-        tier: window.solved_tier,
-        rows: window.samples.len(),
+        tier: ray.solved_tier,
+        rows: ray.samples.len(),
         rows_hash,
-        lambda: window.samples.last().map_or(0.0, |last| last.lambda),
-        cpu_seconds: window.cpu_seconds,
+        lambda: ray.samples.last().map_or(0.0, |last| last.lambda),
+        cpu_seconds: ray.cpu_s,
         ended: now(),
         ..SolveRecord::default()
     }

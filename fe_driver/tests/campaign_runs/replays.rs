@@ -3,8 +3,8 @@
 
 use crate::common::{TWO_WORKERS, campaign, history, job_folder, jobs, run_with};
 use fe_driver::{
-    CalculiX, Campaign, Ccx, CollectedWindow, FailureKind, Restored, RunOptions, Shard,
-    SolveRecord, Solved, Tally, plan, restore, run, status,
+    CalculiX, Campaign, Ccx, FailureKind, Restored, RunOptions, Shard, SolveRecord, Solved,
+    SolvedRay, Tally, plan, restore, run, status,
 };
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
@@ -71,16 +71,8 @@ fn timeless(windows: &[Solved]) -> Vec<Solved> {
 }
 
 /// What a database contains of the solves.
-fn in_database(windows: &[Solved]) -> Vec<CollectedWindow> {
-    let collected = |window: &Solved| CollectedWindow {
-        id: window.id.clone(),
-        tools: window.solve.tools.clone(),
-        solved_tier: window.record.tier,
-        samples: window.samples.clone(),
-        cpu_seconds: window.record.cpu_seconds,
-        failure: window.record.failure,
-    };
-    windows.iter().map(collected).collect()
+fn in_database(windows: &[Solved]) -> Vec<SolvedRay> {
+    windows.iter().map(|window| SolvedRay::new(window, window.samples.clone())).collect()
 }
 
 /// What the machine does to a solver, as scripts: nothing of it is said of the problem.
@@ -271,7 +263,7 @@ fn collected_jobs_are_not_solved_again() {
     assert_eq!(restored(&collected[..2]), expected(2, 0, 0));
     assert_eq!(in_database(&jobs(folder)), collected[..2]);
     let mut foreign = collected[0].clone();
-    foreign.id = "of another campaign".into();
+    foreign.job = "of another campaign".into();
     foreign.tools.ccx += " before";
     let mut further = collected.clone();
     further.insert(0, foreign);

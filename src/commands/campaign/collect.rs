@@ -5,9 +5,9 @@ use anyhow::{Context, Result, ensure};
 use app::output_file;
 use clap::Args;
 use dataset::{Collected, Database, SplitPlan};
-use fe_driver::{JobPart, Solved, Tally, finished_windows};
+use fe_driver::{JobPart, Solved, SolvedRay, Tally, finished_windows};
 use std::path::PathBuf;
-use verification::{SpotStates, rows};
+use verification::SpotStates;
 
 /// Collect the samples of all finished jobs: the database hinges.parquet, and spot-check.parquet,
 /// on which weights are tested
@@ -53,22 +53,22 @@ impl CollectCommand {
             .filter(|window| window.as_ref().map_or(true, is_ray))
             .map(|window| {
                 let window = window?;
-                anyhow::Ok(rows(&window, window.samples.iter().copied()).collect())
+                anyhow::Ok(SolvedRay::new(&window, window.samples.clone()))
             });
         let plan = SplitPlan::default();
         let collected = Collected::write(rays, &plan, &out, self.replace)?;
         println!("{collected}\n{missing}\nwritten to {}", out.display());
         if campaign.spot_rays > 0 {
             let check = SpotStates::collected(&campaign, &parts, &folder)?;
-            let states = check.rows.len();
-            let spot = Database::collect(check.rows, &plan);
+            let spot = Database::collect(check.rays, &plan);
             match spot.context("too few rays of the spot check are solved") {
                 Err(error) if self.partial => println!("no spot check: {error:#}"),
                 spot => {
                     let spot = spot?;
                     spot.write(&of_spot, self.replace)?;
                     println!(
-                        "spot check: {states} states of {} rays, {} states unknown, written to {}",
+                        "spot check: {} states of {} rays, {} states unknown, written to {}",
+                        spot.manifest().rows,
                         spot.manifest().rays,
                         check.unknown_states,
                         of_spot.display()

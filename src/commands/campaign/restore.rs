@@ -5,7 +5,6 @@ use anyhow::Result;
 use clap::Args;
 use dataset::Database;
 use std::path::PathBuf;
-use verification::collected_windows;
 
 /// Restore the job folders of a campaign from the database that was collected from them
 ///
@@ -25,9 +24,8 @@ impl RestoreCommand {
     pub(super) fn run(&self) -> Result<()> {
         let database = Database::read(&self.from)?;
         let campaign = self.campaign.load()?;
-        let windows = collected_windows(database.rows());
         let folder = self.campaign.folder();
-        let restored = fe_driver::restore(&campaign, &folder, &windows)?;
+        let restored = fe_driver::restore(&campaign, &folder, database.rays())?;
         println!(
             "{} rays restored to {}; {} existed already",
             restored.written,

@@ -69,16 +69,16 @@ fn summary(
     states: &[Vec<ComparedState>],
     [tier, reference]: &[String; 2],
 ) -> Document {
-    let count = rays.iter().map(|ray| ray.rows.len()).sum::<usize>();
-    let cpu = [0, 1].map(|i| rays.iter().map(|ray| ray.cpu_s[i]).sum::<f64>() / rays.len() as f64);
+    let count = states.iter().map(Vec::len).sum::<usize>();
+    let cpu = |of: fn(&ComparedRay) -> f64| rays.iter().map(of).sum::<f64>() / rays.len() as f64;
     let mut page = Document::default();
     page.heading(2, format!("Tier {tier} against tier {reference}, over all common states"));
     page.text(format!(
         "{count} states of {} rays, {:.1} and {:.1} CPU s per ray. Differences are root mean squares relative \
          to the root mean square of the tier {reference}: {SCALE}. `kirigami dataset compare`.",
         rays.len(),
-        cpu[0],
-        cpu[1],
+        cpu(|it| it.ray.cpu_s),
+        cpu(|it| it.reference_cpu_s),
     ));
     page.table(spread_table(&groups(states), "ray"));
     page

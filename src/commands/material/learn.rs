@@ -32,7 +32,7 @@ use app::{
     run_folder,
 };
 use clap::Args;
-use dataset::{Database, SplitPlan};
+use dataset::{Database, Manifest, SplitPlan};
 use fe_driver::{Campaign, random_paths};
 use hinge::{Regime, SheetMaterial, TrainingDomain};
 use mesher::Tier;
@@ -152,7 +152,7 @@ impl LearnCommand {
             solver: &FeSolver::find()?,
             workers: self.solve.workers(),
             first_rays: usize::from(self.rays),
-            spot: spot.rows(),
+            spot: spot.rays(),
             accuracy,
             deadline: began.checked_add(self.time),
             stop: interrupt::stop_flag()?,
@@ -266,21 +266,18 @@ impl LearnCommand {
         for unsolved in &check.unsolved {
             println!("not solved: {unsolved}");
         }
-        let states = check.rows.len();
-        let database = Database::collect(check.rows, &SplitPlan::default())
+        let database = Database::collect(check.rays, &SplitPlan::default())
             .context("the solver followed too few rays of the spot check: increase --spot-rays")?;
-        let rays = database.manifest().rays;
+        let Manifest { rays, rows, cpu_s, .. } = database.manifest();
         ensure!(
-            rays >= ErrorInterval::LEAST_RAYS,
-            "{} states on {rays} rays are too few to assess weights, which need {} rays: increase --spot-rays",
-            database.rows().len(),
+            *rays >= ErrorInterval::LEAST_RAYS,
+            "{rows} states on {rays} rays are too few to assess weights, which need {} rays: increase --spot-rays",
             ErrorInterval::LEAST_RAYS
         );
         database.write(&self.out.join("spot-check.parquet"), true)?;
         println!(
-            "spot check: {} rays, {states} of {count} states on rays followed to their end, {:.0} s of CPU time",
-            paths.len(),
-            check.cpu_seconds
+            "spot check: {} rays, {rows} of {count} states on rays followed to their end, {cpu_s:.0} s of CPU time",
+            paths.len()
         );
         Ok(database)
     }

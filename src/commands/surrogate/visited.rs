@@ -56,7 +56,7 @@ impl VisitedCommand {
         for unsolved in &check.unsolved {
             println!("not solved: {unsolved}");
         }
-        let visited = Database::collect(check.rows, &SplitPlan::TEST)?;
+        let visited = Database::collect(check.rays, &SplitPlan::TEST)?;
         visited.write(&self.out.join("visited.parquet"), true)?;
         print_errors(weights, &visited);
         Ok(())

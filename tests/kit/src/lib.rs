@@ -17,3 +17,9 @@ mod processes;
 pub use domain_of_box::domain_of_box;
 pub use fake_ccx::{failing_ccx, fake_ccx};
 pub use processes::left_running;
+
+/// Values with a change of each.
+pub fn changed<T>(mut values: Vec<T>, change: impl FnMut(&mut T)) -> Vec<T> {
+    values.iter_mut().for_each(change);
+    values
+}

@@ -7,7 +7,7 @@
 //!
 //! The energy is positive and has the mirror symmetry.
 
-use dataset::{Database, Row, SplitPlan};
+use dataset::{Database, SolvedRay, SplitPlan, samples};
 use hinge::{HingeConstants, HingeDeformation, HingeDesign, HingeSample};
 use surrogate::{Order, Surrogate};
 use train::{Trained, Training, TrainingConfig, train};
@@ -38,9 +38,8 @@ pub fn sample(design: &HingeDesign, eps: HingeDeformation, lambda: f64) -> Hinge
 }
 
 /// Ten increments of each of `jobs` rays, distributed over the features by irrational steps.
-pub fn rows(jobs: usize) -> Vec<Row> {
-    let mut rows = Vec::new();
-    for job in 0..jobs {
+pub fn rays(jobs: usize) -> Vec<SolvedRay> {
+    let ray = |job: usize| {
         let spread = |step: f64| (step * (job + 1) as f64).fract();
         let design = HingeConstants::PAPER
             .hinge(5.0 + 20.0 * spread(0.754_877_666), 0.8 + 0.77 * spread(0.569_840_291));
@@ -48,22 +47,25 @@ pub fn rows(jobs: usize) -> Vec<Row> {
         let eta_s = 0.5 * spread(0.732_050_808) - 0.25;
         let end =
             HingeDeformation::from_eta(eta_a, eta_s, 1.2 * spread(0.236_067_977), design.w_lig);
-        for increment in 1..=10 {
-            let lambda = 0.1 * f64::from(increment);
-            rows.push(Row {
-                job: format!("job-{job:03}"),
-                design,
-                sample: sample(&design, end.at(lambda), lambda),
-                material: "closed form".into(),
-                ..Row::default()
-            });
+        let at = |lambda: f64| sample(&design, end.at(lambda), lambda);
+        SolvedRay {
+            job: format!("job-{job:03}"),
+            design,
+            samples: (1..=10).map(|k| at(0.1 * f64::from(k))).collect(),
+            material: "closed form".into(),
+            ..SolvedRay::default()
         }
-    }
-    rows
+    };
+    (0..jobs).map(ray).collect()
 }
 
-pub fn database(rows: Vec<Row>) -> Database {
-    Database::collect(rows, &SplitPlan::default()).unwrap()
+/// The designs and the deformations of seven rays.
+pub fn states() -> (Vec<HingeDesign>, Vec<HingeDeformation>) {
+    samples(&rays(7)).map(|(ray, sample)| (ray.design, sample.deformation())).unzip()
+}
+
+pub fn database(rays: Vec<SolvedRay>) -> Database {
+    Database::collect(rays, &SplitPlan::default()).unwrap()
 }
 
 pub fn config(epochs: usize) -> TrainingConfig {
@@ -78,13 +80,12 @@ pub fn config(epochs: usize) -> TrainingConfig {
 }
 
 pub fn trained(epochs: usize) -> Trained {
-    train(&database(rows(60)), &config(epochs), &mut |_| {}).unwrap()
+    train(&database(rays(60)), &config(epochs), &mut |_| {}).unwrap()
 }
 
 /// The energies of a surrogate at some states.
 pub fn energies(surrogate: &Surrogate) -> Vec<f64> {
-    let (designs, deformations): (Vec<_>, Vec<_>) =
-        rows(7).iter().map(|row| (row.design, row.sample.deformation())).unzip();
+    let (designs, deformations) = states();
     let prepared = surrogate.prepare(&designs);
     let energies = surrogate.evaluate(&prepared, &deformations, Order::Value);
     energies.iter().map(|energy| energy.w).collect()

@@ -1,24 +1,24 @@
 //! Several networks of one database, and a network that learns their median.
 
-use crate::closed_form::{config, database, energies, finished, rows};
-use dataset::Row;
-use hinge::{HingeDeformation, HingeDesign};
+use crate::closed_form::{config, database, energies, finished, rays};
+use dataset::samples;
+use hinge::{HingeDeformation, HingeDesign, HingeSample};
 use surrogate::Surrogate;
 use train::{Distillation, Parity, Start, Training, TrainingConfig, TrainingData, train};
 
 #[test]
 fn an_outlier_is_an_error_that_names_job_and_target() {
-    type Change = fn(&mut Row);
+    type Change = fn(&mut HingeSample);
     let changes: [(Change, &str); 3] = [
-        (|row| row.sample.f_s = -1e6, "F_s"),
-        (|row| row.sample.w = 1e6, "W"),
-        (|row| row.sample.d_peak = Some(1e6), "D_peak"),
+        (|sample| sample.f_s = -1e6, "F_s"),
+        (|sample| sample.w = 1e6, "W"),
+        (|sample| sample.d_peak = Some(1e6), "D_peak"),
     ];
     for (change, name) in changes {
-        let mut rows = rows(20);
+        let mut rays = rays(20);
         // Every second ray has an outlier, so that the training part contains some.
-        rows.iter_mut().step_by(20).for_each(change);
-        let error = train(&database(rows), &config(1), &mut |_| {}).unwrap_err().to_string();
+        rays.iter_mut().step_by(2).for_each(|ray| change(&mut ray.samples[0]));
+        let error = train(&database(rays), &config(1), &mut |_| {}).unwrap_err().to_string();
         assert!(
             error.starts_with("job job-") && error.contains(&format!(": {name} = ")),
             "{error}"
@@ -30,18 +30,18 @@ fn an_outlier_is_an_error_that_names_job_and_target() {
 fn ensemble() -> ([Surrogate; 2], Vec<(HingeDesign, HingeDeformation)>) {
     let members = [1, 2].map(|seed| {
         let config = TrainingConfig { seed, ..config(20) };
-        let trained = train(&database(rows(20)), &config, &mut |_| {});
+        let trained = train(&database(rays(20)), &config, &mut |_| {});
         trained.unwrap().surrogate
     });
-    let others = rows(120).split_off(200);
-    let states = others.iter().map(|row| (row.design, row.sample.deformation()));
+    let others = rays(120).split_off(20);
+    let states = samples(&others).map(|(ray, sample)| (ray.design, sample.deformation()));
     (members, states.collect())
 }
 
 #[test]
 fn a_network_learns_the_median_of_several() {
     let (members, states) = ensemble();
-    let database = database(rows(20));
+    let database = database(rays(20));
     let distillation = Distillation::new(&members, &states);
     let student = |distillation: Option<&Distillation>| {
         let data = TrainingData { database: &database, distillation };
@@ -50,7 +50,7 @@ fn a_network_learns_the_median_of_several() {
     };
     let [distilled, alone] = [Some(&distillation), None].map(student);
     // On rays of neither.
-    let unseen = rows(220).split_off(1200);
+    let unseen = rays(220).split_off(120);
     let predicted = |network: &Surrogate| -> Vec<f64> {
         let parity = Parity::new(network, &unseen);
         parity.points(0).map(|[_, predicted]| predicted).collect()
@@ -71,7 +71,7 @@ fn a_network_learns_the_median_of_several() {
     let hashes = members.iter().map(Surrogate::hash);
     assert!(hashes.eq(record.teachers.iter().map(|teacher| teacher.weights.clone())));
     assert_eq!(alone.card().distillation, None);
-    // The median is not evidence: domain, scales and test errors are of the rows alone.
+    // The median is not evidence: domain, scales and test errors are of the rays alone.
     assert_eq!(distilled.card().domain, alone.card().domain);
     assert_eq!(distilled.card().energy_scale, alone.card().energy_scale);
     assert_eq!(distilled.card().test_errors.rows, alone.card().test_errors.rows);
@@ -80,7 +80,7 @@ fn a_network_learns_the_median_of_several() {
 #[test]
 fn a_training_with_a_distillation_continues_only_with_it() {
     let (members, states) = ensemble();
-    let database = database(rows(20));
+    let database = database(rays(20));
     let folder = tempfile::tempdir().unwrap();
     let state = folder.path().join("chi.state");
     let begun = |members: &[Surrogate], states: &[_], start| {

@@ -1,35 +1,35 @@
 //! Trainings that start with the weights of another material.
 
-use crate::closed_form::{config, database, finished, rows, trained};
-use dataset::{Database, Row, Subset};
+use crate::closed_form::{config, database, finished, rays, trained};
+use dataset::{Database, SolvedRay, Subset};
 use hinge::HingeSample;
 use surrogate::Surrogate;
+use testkit::changed;
 use train::{Parity, Start, Training, TrainingConfig, train};
 
-/// The rows in a sheet of `factor` times the thickness, whose material is `stiffness` times as
+/// The rays in a sheet of `factor` times the thickness, whose material is `stiffness` times as
 /// stiff.
-fn similar(rows: Vec<Row>, factor: f64, stiffness: f64) -> Vec<Row> {
+fn similar(rays: Vec<SolvedRay>, factor: f64, stiffness: f64) -> Vec<SolvedRay> {
     let (areas, volumes) = (factor.powi(2) * stiffness, factor.powi(3) * stiffness);
-    let row = |row: Row| Row {
-        design: row.design.scaled(factor),
-        sample: HingeSample {
-            a: factor * row.sample.a,
-            s: factor * row.sample.s,
-            w: volumes * row.sample.w,
-            f_a: areas * row.sample.f_a,
-            f_s: areas * row.sample.f_s,
-            m_theta: volumes * row.sample.m_theta,
-            ..row.sample
-        },
-        ..row
+    let scaled = |x: HingeSample| HingeSample {
+        a: factor * x.a,
+        s: factor * x.s,
+        w: volumes * x.w,
+        f_a: areas * x.f_a,
+        f_s: areas * x.f_s,
+        m_theta: volumes * x.m_theta,
+        ..x
     };
-    rows.into_iter().map(row).collect()
+    changed(rays, |ray| {
+        ray.design = ray.design.scaled(factor);
+        ray.samples.iter_mut().for_each(|sample| *sample = scaled(*sample));
+    })
 }
 
-/// The training of `epochs` epochs on the rows of a sheet of another thickness and stiffness, which
+/// The training of `epochs` epochs on the rays of a sheet of another thickness and stiffness, which
 /// starts from `pretrained`.
 fn tuned(pretrained: &Surrogate, epochs: usize) -> (Database, Training) {
-    let database = database(similar(rows(30), 0.4, 3.0));
+    let database = database(similar(rays(30), 0.4, 3.0));
     let config = TrainingConfig { learning_rate: 1e-3, ..config(epochs) };
     let start = Start::Weights(pretrained);
     let training = Training::new(&database, &config, start).unwrap();
@@ -82,25 +82,23 @@ fn a_fine_tuned_network_is_closer_than_one_from_scratch() {
 
 #[test]
 fn weights_of_the_same_law_keep_their_domain_and_sizes() {
-    let of_law = |rows: Vec<Row>, law: &str| {
-        let with_law = |row| Row { material_hash: law.into(), ..row };
-        database(rows.into_iter().map(with_law).collect())
-    };
-    let whole = of_law(rows(40), "film");
+    let of_law = |rays, law: &str| database(changed(rays, |ray| ray.material_hash = law.into()));
+    let whole = of_law(rays(40), "film");
     let pretrained = train(&whole, &config(1), &mut |_| {}).unwrap().surrogate;
-    let few: Vec<Row> = whole.part(Subset::Training).into_iter().take(80).collect();
-    let start = |rows: &Database| {
+    let mut few = whole.part(Subset::Training);
+    few.truncate(8);
+    let start = |data: &Database| {
         let other = TrainingConfig { embedding: vec![4], ..config(1) };
         let config = other.with_sizes_of(&pretrained);
-        let training = Training::new(rows, &config, Start::Weights(&pretrained));
+        let training = Training::new(data, &config, Start::Weights(&pretrained));
         training.unwrap().finish().unwrap().surrogate
     };
     let domain = |surrogate: &Surrogate| surrogate.card().domain.clone();
     assert_eq!(domain(&start(&of_law(few.clone(), "film"))), domain(&pretrained));
     let other = domain(&start(&of_law(few.clone(), "steel")));
     assert_ne!(other, domain(&pretrained));
-    // Rows beyond the domain enlarge it.
-    assert_ne!(domain(&start(&of_law(rows(120), "film"))), domain(&pretrained));
+    // Rays beyond the domain enlarge it.
+    assert_ne!(domain(&start(&of_law(rays(120), "film"))), domain(&pretrained));
     // The same law in another thickness: the ligaments scale with it.
     let thin = domain(&start(&of_law(similar(few, 0.4, 1.0), "film")));
     assert_eq!(thin, domain(&pretrained.clone().scaled(0.4)));
@@ -110,7 +108,7 @@ fn weights_of_the_same_law_keep_their_domain_and_sizes() {
 #[test]
 fn frozen_layers_are_not_trained() {
     let pretrained = trained(2).surrogate;
-    let database = database(rows(20));
+    let database = database(rays(20));
     let config = TrainingConfig { frozen_layers: 1, ..config(2) };
     let folder = tempfile::tempdir().unwrap();
     let state = folder.path().join("chi.state");
@@ -138,7 +136,7 @@ fn frozen_layers_are_not_trained() {
 #[test]
 fn unsuitable_initial_weights_are_errors() {
     let base = trained(1).surrogate;
-    let database = database(rows(20));
+    let database = database(rays(20));
     let refusal = |pretrained: &Surrogate, config: &TrainingConfig| {
         let start = Start::Weights(pretrained);
         let training = Training::new(&database, config, start);

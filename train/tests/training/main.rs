@@ -5,17 +5,18 @@ mod ensembles;
 mod fine_tuning;
 mod resuming;
 
-use crate::closed_form::{config, database, energies, rows, sample, trained};
-use dataset::{Row, Subset};
+use crate::closed_form::{config, database, energies, rays, sample, states, trained};
+use dataset::{SolvedRay, Subset};
 use hinge::{HingeDeformation, HingeDesign, HingeSample};
 use std::f64::consts::FRAC_PI_2;
 use surrogate::{Order, Surrogate};
+use testkit::changed;
 use train::{Epoch, Parity, Start, Training, TrainingConfig, train};
 
 #[test]
 fn an_energy_in_closed_form_is_learned() {
     let mut reported: Vec<Epoch> = Vec::new();
-    let database = database(rows(200));
+    let database = database(rays(200));
     let trained = train(&database, &config(100), &mut |epoch| {
         reported.push(*epoch);
     })
@@ -48,17 +49,18 @@ fn an_energy_in_closed_form_is_learned() {
     assert_eq!(trained.parity.states.len(), errors.rows);
 }
 
-/// The validation rows have no damage, and their D_peak is not known.
+/// The validation rays have no damage, and their D_peak is not known.
 #[test]
 fn a_damage_head_without_a_known_error_is_that_of_the_last_epoch() {
-    let whole = database(rows(30));
+    let whole = database(rays(30));
     let validation = &whole.manifest().split.validation;
-    let mut rows = whole.rows().to_vec();
-    for row in rows.iter_mut().filter(|row| validation.contains(&row.job)) {
-        row.sample.d = 0.0;
-        row.sample.d_peak = None;
-    }
-    let database = database(rows);
+    let undamaged = |ray: &mut SolvedRay| {
+        if validation.contains(&ray.job) {
+            let none = |x: HingeSample| HingeSample { d: 0.0, d_peak: None, ..x };
+            ray.samples.iter_mut().for_each(|sample| *sample = none(*sample));
+        }
+    };
+    let database = database(changed(whole.rays().to_vec(), undamaged));
     let config = config(3);
     let folder = tempfile::tempdir().unwrap();
     let state = folder.path().join("state");
@@ -87,8 +89,7 @@ fn a_damage_head_without_a_known_error_is_that_of_the_last_epoch() {
 #[test]
 fn mirror_images_give_the_same_energy_and_damage() {
     let surrogate = trained(2).surrogate;
-    let (designs, states): (Vec<_>, Vec<_>) =
-        rows(7).iter().map(|row| (row.design, row.sample.deformation())).unzip();
+    let (designs, states) = states();
     let images: Vec<_> = designs.iter().map(HingeDesign::mirrored).collect();
     let mirrored: Vec<_> = states.iter().map(HingeDeformation::mirrored).collect();
     let close = |left: f64, right: f64| (left - right).abs() <= 1e-12 * left.abs().max(1.0);
@@ -114,7 +115,7 @@ fn equal_seeds_give_equal_weights_and_different_seeds_different_ones() {
     let first = energies(&trained(2).surrogate);
     assert_eq!(first, energies(&trained(2).surrogate));
     let other = TrainingConfig { seed: 5, ..config(2) };
-    let other = train(&database(rows(60)), &other, &mut |_| {}).unwrap();
+    let other = train(&database(rays(60)), &other, &mut |_| {}).unwrap();
     assert_ne!(first, energies(&other.surrogate));
 }
 
@@ -131,36 +132,33 @@ fn a_trained_surrogate_round_trips_through_its_files() {
 
 #[test]
 fn constant_features_and_zero_targets_are_errors() {
-    let refusal = |change: fn(&mut Row)| {
-        let mut rows = rows(12);
-        rows.iter_mut().for_each(change);
-        train(&database(rows), &config(1), &mut |_| {}).unwrap_err().to_string()
+    let refusal = |change: fn(&mut SolvedRay)| {
+        let rays = changed(rays(12), change);
+        train(&database(rays), &config(1), &mut |_| {}).unwrap_err().to_string()
     };
-    let error = refusal(|row| row.design.alpha = FRAC_PI_2);
+    let error = refusal(|ray| ray.design.alpha = FRAC_PI_2);
     assert!(error.starts_with("the feature `alpha` is "), "{error}");
-    let error = refusal(|row| row.sample.theta = 0.7);
+    let error = refusal(|ray| ray.samples.iter_mut().for_each(|x| x.theta = 0.7));
     assert!(error.starts_with("the feature `theta` is "), "{error}");
-    let error = refusal(|row| row.sample.d = 0.0);
+    let error = refusal(|ray| ray.samples.iter_mut().for_each(|x| x.d = 0.0));
     assert!(error.starts_with("the root mean square of D "), "{error}");
 }
 
 #[test]
 fn a_loss_that_overflows_float32_is_an_error() {
-    let mut rows = rows(12);
-    for row in &mut rows {
-        row.sample.f_a *= 1e-60;
-    }
-    let error = train(&database(rows), &config(2), &mut |_| {}).unwrap_err().to_string();
+    let rays = changed(rays(12), |ray| ray.samples.iter_mut().for_each(|x| x.f_a *= 1e-60));
+    let error = train(&database(rays), &config(2), &mut |_| {}).unwrap_err().to_string();
     assert!(error.contains("not finite in epoch 1;"), "{error}");
 }
 
 #[test]
 fn a_database_without_compression_and_without_d_peak_can_be_trained_on() {
-    let mut tension = rows(20);
-    for row in &mut tension {
-        let end = HingeDeformation { a: row.sample.a.abs(), ..row.sample.deformation() };
-        row.sample = HingeSample { d_peak: None, ..sample(&row.design, end, row.sample.lambda) };
-    }
+    let tension = changed(rays(20), |ray| {
+        for x in &mut ray.samples {
+            let end = HingeDeformation { a: x.a.abs(), ..x.deformation() };
+            *x = HingeSample { d_peak: None, ..sample(&ray.design, end, x.lambda) };
+        }
+    });
     let trained = train(&database(tension), &config(2), &mut |_| {}).unwrap();
     let card = trained.surrogate.card();
     assert!(card.domain.bounds()[0][0] >= -0.1);

@@ -1,13 +1,13 @@
 //! A training that is stopped and continued.
 
-use crate::closed_form::{config, database, energies, finished, rows};
+use crate::closed_form::{config, database, energies, finished, rays};
 use std::path::Path;
 use support::Fault;
 use train::{Start, Trained, Training, TrainingConfig};
 
 /// A training of `epochs` epochs after `run` of them.
 fn begun(epochs: usize, run: usize) -> Training {
-    let database = database(rows(20));
+    let database = database(rays(20));
     let mut training = Training::new(&database, &config(epochs), Start::Fresh).unwrap();
     for _ in 0..run {
         training.epoch().unwrap();
@@ -16,7 +16,7 @@ fn begun(epochs: usize, run: usize) -> Training {
 }
 
 fn resumed(state: &Path, config: &TrainingConfig) -> Result<Training, Fault> {
-    let database = database(rows(20));
+    let database = database(rays(20));
     let start = Start::State { state, pretrained: None };
     Training::new(&database, config, start)
 }
@@ -27,7 +27,7 @@ fn a_resumed_training_is_bit_exact() {
     let state = folder.path().join("chi.state");
     let straight = finished(begun(5, 0));
     begun(5, 2).save(&state).unwrap();
-    let database = database(rows(20));
+    let database = database(rays(20));
     let start = Start::State { state: &state, pretrained: None };
     let training = Training::new(&database, &config(5), start).unwrap();
     assert_eq!(training.history().len(), 2);

@@ -4,7 +4,7 @@
 #[path = "../../../fe_driver/tests/common/fake_solver.rs"]
 mod fake_solver;
 
-use dataset::{Fidelity, Row};
+use dataset::{Fidelity, SolvedRay, samples};
 use design::hinge_law::Order;
 use design::objective::design_problem::Deployment;
 use design::pattern::design_vector::DesignVector;
@@ -309,11 +309,11 @@ fn a_spot_check_keeps_the_states_of_the_windows_that_are_solved() {
     let windows = service(&diverges, &folder);
     let tier = Tier::Tiny;
     let check = spot_check(&windows, &paths, &scene.material, tier).unwrap();
-    assert_eq!((check.rows.len(), check.unknown_states), (55, 5));
+    assert_eq!((samples(&check.rays).count(), check.unknown_states), (55, 5));
     assert!(check.unsolved[0].to_string().contains("(3 attempts"), "{}", check.unsolved[0]);
-    let row = &check.rows[0];
-    assert_eq!((row.tier, row.tools.ccx.as_str()), (Fidelity::Solved(Tier::Tiny), "fake"));
-    assert_eq!(row.material_hash, scene.material.law_hash());
+    let ray = &check.rays[0];
+    assert_eq!((ray.tier, ray.tools.ccx.as_str()), (Fidelity::Solved(Tier::Tiny), "fake"));
+    assert_eq!(ray.material_hash, scene.material.law_hash());
 }
 
 #[test]
@@ -328,10 +328,10 @@ fn rays_are_solved_in_rounds_until_the_weights_are_accurate() {
     let windows = service(&solver, &folder);
     let spot = |states: usize| {
         let paths = random_paths(campaign.drawn(&region), states, 4, 1);
-        spot_check(&windows, &paths, &campaign.material, campaign.tier).unwrap().rows
+        spot_check(&windows, &paths, &campaign.material, campaign.tier).unwrap().rays
     };
     let rays = folder.path().join("campaign");
-    let learned_at = |spot: &[Row], accuracy: f64, deadline: Option<Instant>| {
+    let learned_at = |spot: &[SolvedRay], accuracy: f64, deadline: Option<Instant>| {
         let task = LearningTask {
             campaign: &campaign,
             folder: &rays,
@@ -352,7 +352,7 @@ fn rays_are_solved_in_rounds_until_the_weights_are_accurate() {
                 Ok(solved) => solved,
                 Err(end) => return (end, trained, saved),
             };
-            assert!(database.rows().len() >= rays);
+            assert!(database.rays().len() >= rays);
             trained.push(rays);
             let (round, tested) = learning.test(weights.clone(), 1.0).unwrap();
             assert_eq!(round.complete, round.rays);
@@ -384,12 +384,9 @@ fn rays_are_solved_in_rounds_until_the_weights_are_accurate() {
     assert_eq!(learned(1e9, None), (LearningEnd::Accurate, vec![3, 6, 12], vec![12]));
     // No weights are accurate by states on five rays, which have no interval, nor by states of
     // which only three rays have some in the training domain.
-    let beyond = many.iter().enumerate().map(|(i, row)| {
-        let mut row = row.clone();
-        row.design.w_lig *= if i >= 11 { 9.0 } else { 1.0 };
-        row
-    });
-    for spot in [many[..20].to_vec(), beyond.collect()] {
+    let mut beyond = many.clone();
+    beyond[3..].iter_mut().for_each(|ray| ray.design.w_lig *= 9.0);
+    for spot in [many[..5].to_vec(), beyond] {
         assert_eq!(learned_at(&spot, 1e9, None).0, LearningEnd::AllRays);
     }
     assert_eq!(solver.attempts(), before);

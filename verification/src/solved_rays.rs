@@ -1,12 +1,12 @@
-//! Solved windows as rows of a database, and back.
+//! Solved windows as rays of a database.
 
 use crate::verification_error::VerificationError;
 use dataset::{
-    COMPARED, ComparedState, Database, Fidelity, Row, SplitPlan, reference_rms, relative_rms,
+    COMPARED, ComparedState, Database, SolvedRay, SplitPlan, reference_rms, relative_rms,
 };
 use fe_driver::{
-    Campaign, CollectedWindow, DrawnStates, JobPart, SolveService, Solved, SpotPath, WindowProblem,
-    WindowSolve, finished_windows, random_paths,
+    Campaign, DrawnStates, JobPart, SolveService, Solved, SpotPath, WindowProblem, WindowSolve,
+    finished_windows, random_paths,
 };
 use hinge::{HingeDeformation, HingeDesign, HingeSample, SheetMaterial};
 use mesher::Tier;
@@ -15,69 +15,24 @@ use std::path::Path;
 use support::Fault;
 use support::table::Table;
 
-/// Rows with these samples of a solved window.
-pub fn rows(
-    window: &Solved,
-    samples: impl IntoIterator<Item = HingeSample>,
-) -> impl Iterator<Item = Row> {
-    let (solve, record) = (&window.solve, &window.record);
-    let problem = &solve.problem;
-    let row = Row {
-        job: window.id.clone(),
-        design: problem.hinge.design,
-        sample: HingeSample::default(),
-        failure: record.failure,
-        material: problem.material.name.clone(),
-        material_hash: problem.material.law_hash(),
-        settings_hash: solve.settings_hash(),
-        tier: Fidelity::Solved(problem.tier),
-        solved_tier: record.tier,
-        tools: solve.tools.clone(),
-        cpu_s: record.cpu_seconds,
-    };
-    let of_sample = move |sample| Row { sample, ..row.clone() };
-    samples.into_iter().map(of_sample)
-}
-
 /// The database of the finished rays of the campaign that was last run in a folder.
 pub fn collected(folder: &Path) -> Result<Database, VerificationError> {
-    let mut all = Vec::new();
-    for window in finished_windows(folder)? {
-        let window = window.map_err(fe_driver::SolveListError::from)?;
-        all.extend(rows(&window, window.samples.iter().copied()));
-    }
-    Ok(Database::collect(all, &SplitPlan::default())?)
+    let ray = |window: Solved| SolvedRay::new(&window, window.samples.clone());
+    let rays = finished_windows(folder)?.map(|window| window.map(ray));
+    Ok(Database::collect(rays.collect::<Result<_, _>>()?, &SplitPlan::default())?)
 }
 
-/// The solves that the rows come from; `rows` must be sorted by job and lambda.
-pub fn collected_windows(rows: &[Row]) -> Vec<CollectedWindow> {
-    let window = |rows: &[Row]| {
-        let row = rows[0].clone();
-        CollectedWindow {
-            id: row.job,
-            tools: row.tools,
-            solved_tier: row.solved_tier,
-            samples: rows.iter().map(|row| row.sample).collect(),
-            cpu_seconds: row.cpu_s,
-            failure: row.failure,
-        }
-    };
-    rows.chunk_by(|a, b| a.job == b.job).map(window).collect()
-}
-
-// Windows on random rays, solved by finite elements, as rows of a database.
+// Windows on random rays, solved by finite elements.
 
 /// The states on paths that the solver followed to their end.
 #[derive(Debug, Default)]
 pub struct SpotStates {
-    /// One row a state; the rows of a window have one job.
-    pub rows: Vec<Row>,
+    /// The rays, each with the states on its path.
+    pub rays: Vec<SolvedRay>,
     /// The windows of the other paths.
     pub unsolved: Vec<Fault>,
     /// Number of states on the other paths, at which nothing is known.
     pub unknown_states: usize,
-    /// Solver CPU time of the paths that it followed to their end (s).
-    pub cpu_seconds: f64,
 }
 
 /// Solves the windows of the paths.
@@ -112,8 +67,7 @@ impl SpotStates {
             let is_spot = |window: &Solved| parts.get(&window.id) == Some(&JobPart::SpotCheck);
             window.as_ref().map_or(true, is_spot)
         });
-        let windows: Vec<Solved> =
-            windows.collect::<Result<_, _>>().map_err(fe_driver::SolveListError::from)?;
+        let windows = windows.collect::<Result<Vec<Solved>, _>>()?;
         let mut check = Self::default();
         for path in campaign.spot_paths() {
             let of_path = |window: &&Solved| window.solve.problem.hinge == path.hinge;
@@ -131,8 +85,7 @@ impl SpotStates {
             Ok(samples) => {
                 let states = path.fractions.iter();
                 let states = states.filter_map(|fraction| HingeSample::at(samples, *fraction));
-                self.rows.extend(rows(window, states));
-                self.cpu_seconds += window.record.cpu_seconds;
+                self.rays.push(SolvedRay::new(window, states.collect()));
             }
             Err(unsolved) => {
                 self.unknown_states += path.fractions.len();
