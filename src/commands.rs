@@ -41,7 +41,6 @@ pub mod material;
 pub mod mesh;
 #[cfg(feature = "pipeline")]
 pub(crate) mod pipeline;
-mod points_file;
 #[cfg(feature = "pipeline")]
 pub mod solve;
 #[cfg(feature = "pipeline")]

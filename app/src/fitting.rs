@@ -44,7 +44,7 @@ pub fn expected(fit: &FittedScene, thickness: f64) -> String {
     lines.push(held.as_ref().map_or("no equilibrium is found with fasteners".to_owned(), fastened));
     if *reach > WITHOUT_LIMB {
         lines.push(format!(
-            "a part of the target is too narrow for two panels: one panel has it and reaches {:.0} mm from its hinges, which alone hold it",
+            "a part of the target is too narrow for two panels: one panel has it and reaches {:.0} mm from its middle; its hinges alone hold it",
             reach * side
         ));
     }

@@ -1,10 +1,10 @@
 //! `kirigami compare`: points measured on a deployed sheet, compared with its predicted equilibrium
 //! path.
 
-use crate::commands::{inspect::scene_args::Inspected, points_file::PointsFile};
+use crate::commands::inspect::scene_args::Inspected;
 use analysis::{measured_points::Mark, measured_sheet::MeasuredSheet, shape_path::ShapePath};
 use anyhow::{Context, Result, ensure};
-use app::{picture, run_folder};
+use app::{picture, points_file::PointsFile, run_folder};
 use clap::Args;
 use design::sheet::cut_sheet::Sheet;
 use output::{drawing, measurement::MeasurementReport};

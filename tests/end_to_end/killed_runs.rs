@@ -1,7 +1,7 @@
 //! A campaign that is killed repeatedly, or whose folder is lost, gives the same database.
 
 use crate::common::{Workplace, failure, timeless};
-use dataset::Database;
+use dataset::{Database, samples};
 use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;
 use std::os::unix::fs::PermissionsExt;
@@ -152,7 +152,7 @@ fn version(program: &str, flag: &str) -> String {
 fn a_campaign_killed_twenty_times_gives_the_same_database() {
     let replay = Replay::new();
     let whole = timeless(&replay.collected("recorded-campaign"));
-    assert!(whole.len() > 60);
+    assert!(samples(&whole).count() > 60);
     assert!(replay.run("uninterrupted").status().unwrap().success());
     assert_eq!(timeless(&replay.collected("uninterrupted")), whole);
 

@@ -2,7 +2,6 @@
 
 use analysis::measured_points::{Mark, MeasuredPoint};
 use anyhow::{Context, Result, anyhow, bail, ensure};
-use clap::ValueEnum;
 use design::geometry::similarity::Scale;
 use std::{collections::HashMap, path::Path};
 use support::{
@@ -13,47 +12,27 @@ use support::{
 /// The columns of a file; the last two come from the template, and are not read.
 const COLUMNS: [&str; 7] = ["panel", "corner", "x", "y", "unit", "flat_x_mm", "flat_y_mm"];
 
-/// Unit of measured lengths.
-#[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
-enum LengthUnit {
-    /// Millimetres.
-    Mm,
-    /// Centimetres.
-    Cm,
-    /// Metres.
-    M,
-    /// Pixels of a picture, whose scale is not known.
-    Px,
-}
+/// Length of the unit of measured lengths (mm); `None` for pixels of a picture, whose scale is not
+/// known.
+type LengthUnit = Option<f64>;
 
 /// The points of a file.
 #[derive(Debug)]
-pub(super) struct PointsFile {
+pub struct PointsFile {
     /// Measured points in mm, or in pixels.
     pub points: Vec<MeasuredPoint>,
     unit: LengthUnit,
 }
 
-impl LengthUnit {
-    /// Length of the unit (mm); 1 for a pixel.
-    fn length(self) -> f64 {
-        match self {
-            Self::Mm | Self::Px => 1.0,
-            Self::Cm => 10.0,
-            Self::M => 1000.0,
-        }
-    }
-}
-
 impl PointsFile {
     /// Reads a file of points of a sheet with so many panels; lengths are in mm, or in the unit of
     /// the column `unit`.
-    pub(super) fn read(path: &Path, panels: usize, y_down: bool) -> Result<Self> {
+    pub fn read(path: &Path, panels: usize, y_down: bool) -> Result<Self> {
         let NamedTable { head, rows } =
             NamedTable::read(path).map_err(|error| anyhow!("cannot read {error}"))?;
         let located = |line: u64| format!("{}:{line}", path.display());
         let columns = PointColumns::new(&head.1).with_context(|| located(head.0))?;
-        let mut file = Self { points: Vec::new(), unit: LengthUnit::Mm };
+        let mut file = Self { points: Vec::new(), unit: Some(1.0) };
         let mut lines = HashMap::new();
         for (line, row) in rows {
             let Some((mut point, own)) = columns.point(&row).with_context(|| located(line))? else {
@@ -70,14 +49,13 @@ impl PointsFile {
                 bail!("{}: {mark} is measured twice, first in line {first}", located(line));
             }
             let own = own.unwrap_or(file.unit);
-            let pixels = |unit: LengthUnit| unit == LengthUnit::Px;
             ensure!(
-                file.points.is_empty() || pixels(own) == pixels(file.unit),
+                file.points.is_empty() || own.is_some() == file.unit.is_some(),
                 "{}: column `unit`: pixels and lengths are mixed",
                 located(line)
             );
             file.unit = own;
-            point.position = point.position.map(|x| x * own.length());
+            point.position = point.position.map(|x| x * own.unwrap_or(1.0));
             if y_down {
                 point.position[1] *= -1.0;
             }
@@ -87,18 +65,20 @@ impl PointsFile {
     }
 
     /// Whether the scale of the points is known: the scale of pixels is not.
-    pub(super) fn scale(&self) -> Scale {
-        match self.unit {
-            LengthUnit::Px => Scale::Free,
-            _ => Scale::Given,
-        }
+    pub fn scale(&self) -> Scale {
+        if self.unit.is_some() { Scale::Given } else { Scale::Free }
     }
 }
 
 /// The unit of this name in a column.
 fn unit(column: &str, name: &str) -> Result<LengthUnit> {
-    let known = LengthUnit::from_str(name, true);
-    known.map_err(|_| anyhow!("column `{column}`: `{name}` is none of mm, cm, m, px"))
+    Ok(match &*name.to_lowercase() {
+        "mm" => Some(1.0),
+        "cm" => Some(10.0),
+        "m" => Some(1000.0),
+        "px" => None,
+        _ => bail!("column `{column}`: `{name}` is none of mm, cm, m, px"),
+    })
 }
 
 /// Places of the columns in a row.
