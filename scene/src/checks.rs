@@ -199,9 +199,7 @@ fn posture(scene: &SceneConfig) -> Result<(), Fault> {
     let hangs = posture.kind == Posture::Hanging;
     ensure!(
         hangs || posture.down.is_none(),
-        "posture.down is not valid for the kind {:?}: only in a hanging sheet gravity acts in the plane. Remove the key or \
-         change `kind`",
-        posture.kind
+        "posture.down: only a hanging sheet has gravity in its plane: remove the key or change `kind`"
     );
     ensure!(
         !hangs || posture.down().is_some(),

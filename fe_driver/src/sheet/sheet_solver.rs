@@ -33,12 +33,11 @@ impl Solve for SheetSolve {
     }
 
     fn description(&self) -> String {
-        let SheetProblem { shape, restraint, .. } = &self.problem;
+        let SheetProblem { shape, tier, .. } = &self.problem;
         format!(
-            "sheet of {} panels and {} hinges, {restraint:?}, tier {}",
+            "sheet of {} panels and {} hinges, tier {tier}",
             shape.panels.len(),
-            shape.windows.len(),
-            self.problem.tier
+            shape.windows.len()
         )
     }
 

@@ -100,7 +100,7 @@ fn a_sheet_that_is_held_in_no_way_is_refused() {
 [posture]|kind = "held-flat" =>  => say what keeps the panels in their plane
 kind = "held-flat" => kind = "hanging" => posture.down: a hanging sheet needs
 kind = "held-flat" => kind = "hanging"|down = [0.0, 0.0] => posture.down: a hanging sheet needs
-kind = "held-flat" => kind = "lying"|down = [0.0, -1.0] => posture.down is not valid for the kind Lying
+kind = "held-flat" => kind = "lying"|down = [0.0, -1.0] => posture.down: only a hanging sheet
 at = "bottom" => at = "middle" => expected "centroid", "bottom"
 at = "bottom" => at = [1.0, 2.0, 3.0] => expected "centroid", "bottom"
 at = "bottom"|clip = 10.0 => at = [105.0, 80.0]|hole = 4.0 => loads[0].at = [105, 80] mm is outside panel [1, 0] of the start, which has the corners (70.0, 0.0)
