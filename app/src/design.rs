@@ -1,8 +1,11 @@
 //! A design run: its search and the files of its results.
 
-use crate::{animation, failure::Unfinished, picture, run_folder};
+use crate::{animation, failure::Unfinished, picture, progress::Progress, run_folder};
 use anyhow::{Context, Result, bail, ensure};
-use design::optimise::outer_loop::Ended;
+use design::{
+    objective::{scores::shown, term::in_words},
+    optimise::outer_loop::{Ended, StepRecord},
+};
 use output::{
     drawing::deployment_frames,
     report::{Report, Warning},
@@ -10,8 +13,8 @@ use output::{
     run_results::{remove_run, write_results},
 };
 use scene::{
-    Scene,
-    design_run::{Designed, LEVELS},
+    Level, Scene,
+    design_run::{Designed, LEVELS, OnStep},
     run_inputs::{SCENE_FILE, holds_a_run},
 };
 use std::{fs::File, path::Path};
@@ -111,4 +114,35 @@ fn rasterise(folder: &Path) -> Result<()> {
         }
     }
     Ok(())
+}
+
+/// Runs searches at one or several levels, each with a bar of its own.
+pub fn with_level_bars<T>(scene: &Scene, searches: impl FnOnce(OnStep) -> T) -> T {
+    let total = scene.config.optimiser.steps;
+    let mut shown: Option<(Level, Progress)> = None;
+    let found = searches(&mut |level, search| {
+        let step = search.last();
+        let same = shown.take().filter(|(shown, _)| *shown == level);
+        let (_, bar) =
+            shown.insert(same.unwrap_or_else(|| (level, Progress::new(total, level.name()))));
+        bar.show(step.step, None, &progress_line(step, level.is_learned()));
+    });
+    shown.into_iter().for_each(|(_, bar)| bar.finish());
+    found
+}
+
+/// A step in one line: the loss and its non-zero terms, outline error, for a learned law the
+/// fraction inside its training domain.
+fn progress_line(step: &StepRecord, learned: bool) -> String {
+    let scores = &step.scores;
+    let terms = (scores.terms.iter())
+        .filter(|(_, value)| **value != 0.0)
+        .map(|(name, value)| format!("{} {}", in_words(name), shown(*value)))
+        .joined(", ");
+    let inside = if learned {
+        format!(", {:.0} % inside the domain", 100.0 * scores.share_inside)
+    } else {
+        String::new()
+    };
+    format!("loss {:.4} ({terms}), outline {:.2} mm{inside}", scores.loss, scores.outline_error)
 }

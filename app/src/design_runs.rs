@@ -1,15 +1,22 @@
 //! Several design runs in one command: every scene with every seed, each in a run folder of its
 //! own, and one table that compares them.
 
-use crate::run_folder;
+use crate::{design::ended, failure::Unfinished, progress::Progress, run_folder};
 use anyhow::{Context, Result, ensure};
+use output::report::Report;
 use scene::Scene;
 use serde_json::Value;
 use std::{
     collections::BTreeSet,
     path::{Path, PathBuf},
+    sync::atomic::AtomicBool,
 };
-use support::{regular_file, table::Table, unread};
+use support::{
+    regular_file,
+    table::Table,
+    unread,
+    worker_pool::{NoThread, Reports, work_through},
+};
 
 /// One design run.
 pub struct DesignRun {
@@ -35,8 +42,47 @@ pub fn refuse_shared_folders(runs: &[DesignRun]) -> Result<()> {
     Ok(())
 }
 
+/// Designs runs, `workers` at a time, and compares them in a table, which is written to a folder and
+/// printed. An error if a run fails, or is left when `stop` becomes true.
+pub fn design_all(
+    mut runs: Vec<DesignRun>,
+    workers: usize,
+    folder: &Path,
+    stop: &AtomicBool,
+    design: &(dyn Fn(&Scene) -> Result<Report> + Sync),
+) -> Result<()> {
+    let scenes: Vec<Scene> = runs.iter().map(|run| run.scene.clone()).collect();
+    let bar = Progress::new(runs.len(), "designs");
+    let (mut left, mut done) = (runs.len(), 0);
+    let work = |i: usize, reports: &Reports<(usize, Result<()>)>| {
+        let end = design(&scenes[i]).and_then(|report| ended(&scenes[i], &report));
+        reports.send((i, end));
+    };
+    work_through(runs.len(), workers, stop, &work, &mut |(i, ended)| {
+        done += 1;
+        bar.show(done, None, &runs[i].file.display().to_string());
+        if !ended.as_ref().is_err_and(|error| error.is::<Unfinished>()) {
+            left -= 1;
+            runs[i].failure = ended.err().map(|error| format!("{error:#}"));
+        }
+        Ok::<_, NoThread>(())
+    })?;
+    bar.finish();
+    let listed = compare(&runs, folder)?;
+    println!("{listed}\nwritten to {}", folder.display());
+    let failure = |run: &DesignRun| {
+        let why = run.failure.as_ref()?;
+        Some(format!("\n{}: {why}", run.scene.output().display()))
+    };
+    let failures: Vec<String> = runs.iter().filter_map(failure).collect();
+    let (failed, all) = (failures.len(), runs.len());
+    ensure!(left == 0, Unfinished { left, what: "runs" });
+    ensure!(failed == 0, "{failed} of {all} runs failed{}", failures.concat());
+    Ok(())
+}
+
 /// Writes `designs.csv` and `designs.md` to `folder`, and returns the table.
-pub fn compare(runs: &[DesignRun], folder: &Path) -> Result<Table> {
+fn compare(runs: &[DesignRun], folder: &Path) -> Result<Table> {
     let mut table = Table::new(COLUMNS);
     for run in runs {
         table.row(cells(run)?);

@@ -8,19 +8,13 @@ use crate::ui::{
     with_unit::{self, CornerTolerance},
 };
 use analysis::refinement::{inverse_design, refine, search};
-use anyhow::{Result, bail, ensure};
+use anyhow::{Result, ensure};
 use app::{
-    design::{ended, hold, write_run},
-    design_runs::{DesignRun, compare, refuse_shared_folders},
-    failure::Unfinished,
+    design::{ended, hold, with_level_bars, write_run},
+    design_runs::{DesignRun, design_all, refuse_shared_folders},
     output_file,
-    progress::Progress,
 };
 use clap::Args;
-use design::{
-    objective::{scores::shown, term::in_words},
-    optimise::outer_loop::StepRecord,
-};
 use output::report::Report;
 use scene::{
     Level, Scene, SceneConfig,
@@ -28,8 +22,6 @@ use scene::{
     run_inputs::{SCENE_FILE, scene_file},
 };
 use std::path::{Path, PathBuf};
-use support::Joined;
-use support::worker_pool::{NoThread, Reports, work_through};
 
 /// Design a sheet: cut pattern and ligament widths for a target shape
 ///
@@ -136,7 +128,7 @@ impl DesignCommand {
     }
 
     /// Designs the runs, as many at a time as there are processors, and compares them.
-    fn run_many(&self, mut runs: Vec<DesignRun>) -> Result<()> {
+    fn run_many(&self, runs: Vec<DesignRun>) -> Result<()> {
         let stop = interrupt::stop_flag()?;
         let folder = self.out.clone().unwrap_or("runs/designs".into());
         output_file::create_folder(&folder)?;
@@ -145,41 +137,7 @@ impl DesignCommand {
             Some(Level::Final) => 1,
             _ => processors(),
         };
-        let scenes: Vec<Scene> = runs.iter().map(|run| run.scene.clone()).collect();
-        let bar = Progress::new(runs.len(), "designs");
-        let (mut left, mut failed, mut done) = (runs.len(), 0, 0);
-        let work = |i: usize, reports: &Reports<(usize, Result<()>)>| {
-            let designed = self.design(&scenes[i], &mut |_, _| {});
-            let end = designed.and_then(|report| ended(&scenes[i], &report));
-            reports.send((i, end));
-        };
-        work_through(runs.len(), workers, stop, &work, &mut |(i, ended)| {
-            done += 1;
-            bar.show(done, None, &runs[i].file.display().to_string());
-            match ended {
-                Ok(()) => left -= 1,
-                Err(error) if error.is::<Unfinished>() => {}
-                Err(error) => {
-                    left -= 1;
-                    failed += 1;
-                    runs[i].failure = Some(format!("{error:#}"));
-                }
-            }
-            Ok::<_, NoThread>(())
-        })?;
-        bar.finish();
-        let listed = compare(&runs, &folder)?;
-        println!("{listed}\nwritten to {}", folder.display());
-        let failure = |run: &DesignRun| {
-            let why = run.failure.as_ref()?;
-            Some(format!("\n{}: {why}", run.scene.output().display()))
-        };
-        let failures: String = runs.iter().filter_map(failure).collect();
-        match left {
-            0 => ensure!(failed == 0, "{failed} of {} runs failed{failures}", runs.len()),
-            _ => bail!(Unfinished { left, what: "runs" }),
-        }
-        Ok(())
+        design_all(runs, workers, &folder, stop, &|scene| self.design(scene, &mut |_, _| {}))
     }
 
     /// One run: its search and its results.
@@ -209,7 +167,7 @@ impl DesignCommand {
 
     #[cfg(not(feature = "pipeline"))]
     fn search_by_elements(&self, _: &Scene, _: OnStep) -> Result<scene::design_run::Designed> {
-        bail!(
+        anyhow::bail!(
             "the level `final` needs finite elements: install the whole program, as the README says"
         )
     }
@@ -231,35 +189,4 @@ impl DesignCommand {
         }
         Ok(scene)
     }
-}
-
-/// Runs searches at one or several levels, each with a bar of its own.
-fn with_level_bars<T>(scene: &Scene, searches: impl FnOnce(OnStep) -> T) -> T {
-    let total = scene.config.optimiser.steps;
-    let mut shown: Option<(Level, Progress)> = None;
-    let found = searches(&mut |level, search| {
-        let step = search.last();
-        let same = shown.take().filter(|(shown, _)| *shown == level);
-        let (_, bar) =
-            shown.insert(same.unwrap_or_else(|| (level, Progress::new(total, level.name()))));
-        bar.show(step.step, None, &progress_line(step, level.is_learned()));
-    });
-    shown.into_iter().for_each(|(_, bar)| bar.finish());
-    found
-}
-
-/// A step in one line: the loss and its non-zero terms, outline error, for a learned law the
-/// fraction inside its training domain.
-fn progress_line(step: &StepRecord, learned: bool) -> String {
-    let scores = &step.scores;
-    let terms = (scores.terms.iter())
-        .filter(|(_, value)| **value != 0.0)
-        .map(|(name, value)| format!("{} {}", in_words(name), shown(*value)))
-        .joined(", ");
-    let inside = if learned {
-        format!(", {:.0} % inside the domain", 100.0 * scores.share_inside)
-    } else {
-        String::new()
-    };
-    format!("loss {:.4} ({terms}), outline {:.2} mm{inside}", scores.loss, scores.outline_error)
 }

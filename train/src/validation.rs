@@ -21,12 +21,12 @@ pub struct Parity {
 
 /// The rays with their samples inside the training domain of a surrogate.
 pub fn inside(surrogate: &Surrogate, rays: &[SolvedRay]) -> Vec<SolvedRay> {
-    let inside = |ray: &SolvedRay| {
-        let mut inside = ray.clone();
-        inside.samples.retain(|sample| surrogate.contains(&ray.design, &sample.deformation()));
-        inside
-    };
-    rays.iter().map(inside).filter(|ray| !ray.samples.is_empty()).collect()
+    let mut inside = rays.to_vec();
+    for SolvedRay { design, samples, .. } in &mut inside {
+        samples.retain(|sample| surrogate.contains(design, &sample.deformation()));
+    }
+    inside.retain(|ray| !ray.samples.is_empty());
+    inside
 }
 
 /// The errors of a surrogate at random states on windows of a mesh tier, for its card.
