@@ -174,7 +174,7 @@ mod tests {
         };
         assert_eq!(read(|_| ()).unwrap(), rays(1));
         let differ =
-            |name| Err(format!("column `{name}`: the rows of a job have different values"));
+            |name| Err(format!("column `{name}`, row 5: the rows of a job have different values"));
         assert_eq!(read(|ray| ray.material = "steel".into()), differ("material"));
         assert_eq!(read(|ray| ray.design.w_lig += 1e-9), differ("w_lig"));
     }

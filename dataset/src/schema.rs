@@ -6,7 +6,7 @@ use hinge::HingeSample;
 use polars::prelude::{
     Column, DataFrame, IntoColumn, NamedFrom, PolarsError, PolarsResult, Series,
 };
-use support::{Fault, ensure, fault, refuse};
+use support::{Fault, fault, refuse};
 
 /// What a column of a database holds.
 #[derive(Debug)]
@@ -209,11 +209,18 @@ pub(crate) fn from_frame(frame: &DataFrame, most_text: usize) -> Result<Vec<Solv
         ..SolvedRay::default()
     };
     let mut rays: Vec<SolvedRay> = std::iter::zip(&starts, ends).map(ray).collect();
+    let one_a_ray = |name: &str, same: &dyn Fn(usize) -> bool| -> Result<(), Fault> {
+        if let Some(row) = (1..frame.height()).find(|row| !is_first(row) && !same(*row)) {
+            refuse!("column `{name}`, row {row}: the rows of a job have different values");
+        }
+        Ok(())
+    };
     for ColumnMeaning { name, value, .. } in &COLUMNS {
         let gap = |row| fault!("column `{name}` has no value in row {row}");
         match value {
             Value::Text(_, set) => {
                 let texts = texts(name)?;
+                one_a_ray(name, &|row| texts.get(row) == texts.get(row - 1))?;
                 for (ray, &row) in rays.iter_mut().zip(&starts) {
                     let text = texts.get(row).ok_or_else(|| gap(row))?;
                     left = left.checked_sub(text.len()).ok_or_else(|| {
@@ -228,6 +235,7 @@ pub(crate) fn from_frame(frame: &DataFrame, most_text: usize) -> Result<Vec<Solv
             }
             Value::OfRay(_, set) => {
                 let numbers = numbers(name)?;
+                one_a_ray(name, &|row| numbers.get(row) == numbers.get(row - 1))?;
                 for (ray, &row) in rays.iter_mut().zip(&starts) {
                     set(ray, numbers.get(row).ok_or_else(|| gap(row))?);
                 }
@@ -248,16 +256,6 @@ pub(crate) fn from_frame(frame: &DataFrame, most_text: usize) -> Result<Vec<Solv
     let bad = samples(&rays).find(|(ray, sample)| !is_finite(ray, sample));
     if let Some((SolvedRay { job, .. }, HingeSample { lambda, .. })) = bad {
         refuse!("job {job}, lambda = {lambda}: the row contains a number that is not finite");
-    }
-    let written = to_frame(&rays).map_err(no_table)?;
-    let same = |name| Ok(written.column(name)?.equals_missing(frame.column(name)?));
-    let of_ray =
-        |column: &&ColumnMeaning| matches!(column.value, Value::Text(..) | Value::OfRay(..));
-    for ColumnMeaning { name, .. } in COLUMNS.iter().filter(of_ray) {
-        ensure!(
-            same(name).map_err(no_table)?,
-            "column `{name}`: the rows of a job have different values"
-        );
     }
     Ok(rays)
 }
