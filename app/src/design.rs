@@ -139,10 +139,7 @@ fn progress_line(step: &StepRecord, learned: bool) -> String {
         .filter(|(_, value)| **value != 0.0)
         .map(|(name, value)| format!("{} {}", in_words(name), shown(*value)))
         .joined(", ");
-    let inside = if learned {
-        format!(", {:.0} % inside the domain", 100.0 * scores.share_inside)
-    } else {
-        String::new()
-    };
+    let inside = || format!(", {:.0} % inside the domain", 100.0 * scores.share_inside);
+    let inside = learned.then(inside).unwrap_or_default();
     format!("loss {:.4} ({terms}), outline {:.2} mm{inside}", scores.loss, scores.outline_error)
 }

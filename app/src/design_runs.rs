@@ -75,9 +75,9 @@ pub fn design_all(
         Some(format!("\n{}: {why}", run.scene.output().display()))
     };
     let failures: Vec<String> = runs.iter().filter_map(failure).collect();
-    let (failed, all) = (failures.len(), runs.len());
+    let failed = failures.len();
     ensure!(left == 0, Unfinished { left, what: "runs" });
-    ensure!(failed == 0, "{failed} of {all} runs failed{}", failures.concat());
+    ensure!(failed == 0, "{failed} of {} runs failed{}", runs.len(), failures.concat());
     Ok(())
 }
 

@@ -194,8 +194,8 @@ pub(crate) fn to_frame(rays: &[SolvedRay]) -> PolarsResult<DataFrame> {
 
 /// The rays of a table: rows one after the other with the same job. Every column must exist with
 /// its type, without gaps except where a value may be unknown, and every number must be finite. A
-/// text that many rows share is in the table once and in every ray: over `most_text` bytes are
-/// refused.
+/// text that many rows share is in the file once, and in every row where a table is made: over
+/// `most_text` bytes in all rows are refused.
 pub(crate) fn from_frame(frame: &DataFrame, most_text: usize) -> Result<Vec<SolvedRay>, Fault> {
     let mut left = most_text;
     let texts = |name| frame.column(name).and_then(Column::str).map_err(no_table);
@@ -223,7 +223,7 @@ pub(crate) fn from_frame(frame: &DataFrame, most_text: usize) -> Result<Vec<Solv
                 one_a_ray(name, &|row| texts.get(row) == texts.get(row - 1))?;
                 for (ray, &row) in rays.iter_mut().zip(&starts) {
                     let text = texts.get(row).ok_or_else(|| gap(row))?;
-                    left = left.checked_sub(text.len()).ok_or_else(|| {
+                    left = left.checked_sub(text.len() * ray.samples.len()).ok_or_else(|| {
                         fault!(
                             "the texts of the table exceed {most_text} bytes at row {row} of the \
                              column `{name}`: the file is damaged, or made to fill the memory"
