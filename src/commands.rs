@@ -21,36 +21,17 @@ macro_rules! subcommands {
     };
 }
 
-#[cfg(feature = "pipeline")]
-pub mod campaign;
 pub mod compare;
 pub mod cut;
-#[cfg(feature = "pipeline")]
-pub mod dataset;
 #[cfg(feature = "pipeline")]
 pub mod demo;
 pub mod design;
 pub mod doctor;
 pub mod export;
 pub mod init;
-
 pub mod inspect;
 pub mod levels;
 pub mod material;
 #[cfg(feature = "pipeline")]
-pub mod mesh;
-#[cfg(feature = "pipeline")]
 pub(crate) mod pipeline;
-#[cfg(feature = "pipeline")]
-pub mod solve;
-#[cfg(feature = "pipeline")]
-pub mod solve_args;
 pub mod studio;
-#[cfg(feature = "pipeline")]
-pub mod surrogate;
-#[cfg(feature = "pipeline")]
-pub mod train;
-#[cfg(feature = "pipeline")]
-pub mod verify;
-#[cfg(feature = "pipeline")]
-mod window_args;

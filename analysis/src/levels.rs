@@ -11,6 +11,8 @@ use std::convert::Infallible;
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 use support::Fault;
+use support::document::Document;
+use support::table::{Cell, Table};
 
 /// Steps of a search that are timed: one whose path is followed, and those up to the next one.
 const TIMED: usize = 10;
@@ -43,6 +45,55 @@ pub struct Levels {
     pub levels: Vec<LevelCost>,
     /// What no level buys: the causes of errors of the finest level other than its networks.
     pub others: Vec<Contribution>,
+}
+
+impl Levels {
+    /// The table, and what it leaves out.
+    pub fn document(&self) -> Document {
+        let mut table = Table::new([
+            "level",
+            "step\ns",
+            "search\ns",
+            "corners, rms\nmm",
+            "largest\nmm",
+            "load\n%",
+            "D_peak\n",
+        ]);
+        self.levels.iter().for_each(|level| table.row(level.cells()));
+        let finest = self.levels.last().map_or("", |level| level.level.name());
+        let mut page = Document::default();
+        page.table(table);
+        page.text(format!(
+            "step, search: of the search, at the speed of its first ten steps; corners, load, D_peak: differences to `{finest}`"
+        ));
+        page.list(self.levels.iter().filter_map(|level| {
+            let failure = level.failure.as_ref()?;
+            Some(format!("{}: {failure}", level.level))
+        }));
+        page.list(self.others.iter().map(|other| {
+            let corners = other
+                .effect
+                .as_ref()
+                .map_or("not known".into(), |effect| format!("{:.3} mm", effect.corners[1]));
+            format!("no level lowers: {}, {corners}", other.cause.name())
+        }));
+        page
+    }
+}
+
+impl LevelCost {
+    fn cells(&self) -> [Cell; 7] {
+        let difference = self.difference.as_ref();
+        [
+            Cell::text(self.level.name()),
+            Cell::fixed(self.step, 4),
+            Cell::fixed(self.search, 1),
+            Cell::fixed(difference.map(|found| found.corners[0]), 3),
+            Cell::fixed(difference.map(|found| found.corners[1]), 3),
+            Cell::fixed(difference.and_then(|found| found.load).map(|x| 100.0 * x), 2),
+            Cell::fixed(difference.and_then(|found| found.damage), 4),
+        ]
+    }
 }
 
 /// Measures every level that a scene has networks for, and those below. `progress` is called with

@@ -14,7 +14,9 @@ use crate::calibration::CALIBRATION;
 use hinge::{Regime, SheetMaterial};
 use serde::Serialize;
 use support::Extremes;
+use support::document::Document;
 use support::severity::{Finding, Severity};
+use support::table::{Cell, Table};
 
 /// The minimum and maximum ligament width (mm) for which there are hinge data, in a sheet of the given
 /// thickness (mm).
@@ -77,6 +79,39 @@ impl MaterialCheck {
         }
     }
 
+    /// The law, the estimates and the verdicts of the material that was checked.
+    pub fn document(&self, material: &SheetMaterial) -> Document {
+        let SheetMaterial { name, thickness, young, poisson, plastic, .. } = material;
+        let mut page = Document::default();
+        page.text(format!("{name}, {thickness} mm (law {})", self.law_hash));
+        page.text(format!(
+            "*ELASTIC as the window solver reads it: E = {young} MPa, nu = {poisson}; *PLASTIC:"
+        ));
+        let mut rows = Table::new(["row", "true stress, MPa", "plastic strain", "slope, MPa"]);
+        for (index, [stress, strain]) in plastic.iter().enumerate() {
+            let slope = match plastic.get(index + 1) {
+                Some([next, to]) => format!("{:.0}", (next - stress) / (to - strain)),
+                None => "constant".into(),
+            };
+            rows.row([(index + 1).to_string(), stress.to_string(), strain.to_string(), slope]);
+        }
+        page.table(rows);
+        let mut widths =
+            Table::new(["w_lig\nmm", "w/t", "buckles at\ndeg", "surface yields at\ndeg", "tears"]);
+        for it in &self.ligaments {
+            widths.row([
+                Cell::fixed(it.w_lig, 2),
+                Cell::fixed(it.slenderness, 2),
+                Cell::fixed(it.buckles_at_deg, 2),
+                Cell::fixed(it.yields_at_deg, 1),
+                Cell::text(it.tears()),
+            ]);
+        }
+        page.table(widths);
+        page.list(self.verdicts.iter().map(ToString::to_string));
+        page
+    }
+
     /// What excludes the use.
     pub fn errors(&self) -> impl Iterator<Item = &Finding> {
         self.verdicts.iter().filter(|verdict| verdict.severity == Severity::Error)
@@ -101,7 +136,7 @@ impl LigamentEstimate {
     }
 
     /// The rotations at which the tip tears, in words.
-    pub fn tears(&self) -> String {
+    fn tears(&self) -> String {
         let [from, to] = self.tears_at_deg;
         if from >= HALF_TURN {
             "at no opening".to_owned()

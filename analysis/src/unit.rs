@@ -1,37 +1,29 @@
 //! The units of what is computed of a sheet.
 
 use serde::{Serialize, Serializer};
-use std::fmt;
 
 /// A unit, written as its symbol; none for texts, counts and ratios.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, derive_more::Display)]
 #[allow(missing_docs, reason = "the names are the units")]
 pub enum Unit {
+    #[display("")]
     None,
+    #[display("mm")]
     Millimetre,
+    #[display("rad")]
     Radian,
+    #[display("kg")]
     Kilogram,
+    #[display("N")]
     Newton,
+    #[display("N mm")]
     NewtonMillimetre,
+    #[display("N/mm")]
     NewtonPerMillimetre,
+    #[display("N mm/rad")]
     NewtonMillimetrePerRadian,
+    #[display("%")]
     Percent,
-}
-
-impl fmt::Display for Unit {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        f.write_str(match self {
-            Self::None => "",
-            Self::Millimetre => "mm",
-            Self::Radian => "rad",
-            Self::Kilogram => "kg",
-            Self::Newton => "N",
-            Self::NewtonMillimetre => "N mm",
-            Self::NewtonPerMillimetre => "N/mm",
-            Self::NewtonMillimetrePerRadian => "N mm/rad",
-            Self::Percent => "%",
-        })
-    }
 }
 
 impl Serialize for Unit {

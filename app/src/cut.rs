@@ -138,6 +138,8 @@ impl CheckedCut {
 }
 
 /// Files that were written.
+#[derive(derive_more::Display)]
+#[display("{} in {}", names.join(", "), folder.display())]
 pub struct Written {
     /// Their folder.
     pub folder: PathBuf,
@@ -161,12 +163,6 @@ impl Written {
         write_drawing(&self.folder, "cut", drawing)?;
         self.names.extend(["cut.dxf", "cut.svg"].map(str::to_owned));
         Ok(())
-    }
-}
-
-impl Display for Written {
-    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        write!(f, "{} in {}", self.names.join(", "), self.folder.display())
     }
 }
 

@@ -18,18 +18,19 @@ pub mod failure;
 pub mod fit_report;
 pub mod fitting;
 pub mod input_file;
+pub mod measured;
 pub mod new_project;
 pub mod output_file;
 pub mod own_drawing;
 pub mod picture;
-pub mod points_file;
+#[cfg(feature = "pipeline")]
+mod pipeline;
 pub mod progress;
 pub mod run_folder;
 pub mod shell_word;
+
 #[cfg(feature = "pipeline")]
-pub mod state_errors;
-#[cfg(feature = "pipeline")]
-pub mod train;
+pub use pipeline::*;
 
 /// Whether the commands from a material to weights are in this build, and finite elements.
 pub const WHOLE_BUILD: bool = cfg!(feature = "pipeline");

@@ -221,3 +221,11 @@ impl State {
         format!("State({})", self.0.state())
     }
 }
+
+/// One of many equilibria, or why there is none.
+#[derive(IntoPyObject)]
+#[expect(clippy::large_enum_variant, reason = "each is moved to Python once")]
+pub(crate) enum BatchElement {
+    Found(State),
+    Missing(PyErr),
+}

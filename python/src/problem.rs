@@ -4,7 +4,7 @@ mod inputs;
 
 use crate::{
     arrays::{Argument, Array, Numbers, Plain, finite, list, plain, rows, shaped},
-    deployment::{Deployment, State},
+    deployment::{BatchElement, Deployment, State},
     errors,
     flat_sheet::Sheet,
     scene_keys::{read_level, read_method, scene_of},
@@ -51,14 +51,6 @@ pub(crate) struct Problem {
     warm: Mutex<Warm>,
     /// Ends the paths that are followed, at Ctrl-C.
     stop: Arc<AtomicBool>,
-}
-
-/// One of many equilibria, or why there is none.
-#[derive(IntoPyObject)]
-#[expect(clippy::large_enum_variant, reason = "each is moved to Python once")]
-enum BatchElement {
-    Found(State),
-    Missing(PyErr),
 }
 
 /// The gradient of a function of the equilibrium, as a dict.

@@ -1,5 +1,6 @@
 //! Supports and loads as written in a scene, with panels named by [column, row].
 
+use crate::rounding::rounded;
 use design::{
     pattern::grid::{EDGES, Grid},
     sheet::{cut_sheet::PanelPoint, topology::Topology},
@@ -7,7 +8,7 @@ use design::{
 use hinge::STANDARD_GRAVITY;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use std::{f64::consts::TAU, fmt};
+use std::f64::consts::TAU;
 use support::Point;
 
 /// A supported panel.
@@ -52,8 +53,10 @@ pub enum SupportKind {
     RollerY,
 }
 
-/// A point of a panel.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+/// A point of a panel; as text what stands before the name of its panel, nothing for its centroid.
+#[derive(
+    Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema, derive_more::Display,
+)]
 #[serde(
     untagged,
     expecting = "expected \"centroid\", \"bottom\", \"right\", \"top\", \"left\" or a point [x, y] of the flat sheet (mm)"
@@ -63,22 +66,30 @@ pub enum At {
     /// By its name.
     Named(NamedPoint),
     /// [x, y] in the flat sheet (mm); it does not move with the cuts.
+    #[display("the point ({}, {}) of ", rounded(_0[0]), rounded(_0[1]))]
     Point(Point),
 }
 
 /// A point of a panel that moves with its cuts.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(
+    Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema, derive_more::Display,
+)]
 #[serde(rename_all = "kebab-case")]
 pub enum NamedPoint {
     /// The centroid of the panel.
+    #[display("")]
     Centroid,
     /// The middle of its lower edge.
+    #[display("the middle of the lower edge of ")]
     Bottom,
     /// The middle of its right edge.
+    #[display("the middle of the right edge of ")]
     Right,
     /// The middle of its upper edge.
+    #[display("the middle of the upper edge of ")]
     Top,
     /// The middle of its left edge.
+    #[display("the middle of the left edge of ")]
     Left,
 }
 
@@ -261,24 +272,6 @@ impl At {
             Self::Named(NamedPoint::Right) => Some(SheetEdge::Right),
             Self::Named(NamedPoint::Top) => Some(SheetEdge::Top),
             Self::Named(NamedPoint::Left) => Some(SheetEdge::Left),
-        }
-    }
-}
-
-/// The point before the name of its panel; empty for its centroid.
-impl fmt::Display for At {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        match self {
-            Self::Named(NamedPoint::Centroid) => Ok(()),
-            Self::Named(NamedPoint::Bottom) => f.write_str("the middle of the lower edge of "),
-            Self::Named(NamedPoint::Right) => f.write_str("the middle of the right edge of "),
-            Self::Named(NamedPoint::Top) => f.write_str("the middle of the upper edge of "),
-            Self::Named(NamedPoint::Left) => f.write_str("the middle of the left edge of "),
-            Self::Point(at) => {
-                // To a thousandth of a millimetre.
-                let [x, y] = at.map(|x| (1e3 * x).round() / 1e3);
-                write!(f, "the point ({x}, {y}) of ")
-            }
         }
     }
 }

@@ -1,19 +1,14 @@
 //! `kirigami compare`: points measured on a deployed sheet, compared with its predicted equilibrium
 //! path.
 
-use crate::commands::inspect::scene_args::Inspected;
-use analysis::{measured_points::Mark, measured_sheet::MeasuredSheet, shape_path::ShapePath};
-use anyhow::{Context, Result, ensure};
-use app::{picture, points_file::PointsFile, run_folder};
-use clap::Args;
-use design::sheet::cut_sheet::Sheet;
-use output::{drawing, measurement::MeasurementReport};
-use scene::Scene;
-use std::{
-    collections::BTreeSet,
-    fmt::Write,
-    path::{Path, PathBuf},
+use crate::{commands::inspect::scene_args::Inspected, ui::print};
+use anyhow::{Context, Result};
+use app::{
+    measured::{compare, write_template},
+    run_folder,
 };
+use clap::Args;
+use std::path::PathBuf;
 
 /// Compare points measured on a deployed sheet with the prediction
 ///
@@ -49,80 +44,23 @@ pub struct CompareCommand {
     json: bool,
 }
 
-/// Width of the pictures (px).
-const PICTURE_WIDTH: u32 = 2000;
-
 impl CompareCommand {
     pub(crate) fn run(&self) -> Result<()> {
         let (scene, design, _) = self.designed.chosen().read_run()?;
-        let problem = scene.problem()?;
         let _held = run_folder::hold(&self.out)?;
         if self.template {
-            let (_, sheet) = problem.cut(&design)?;
-            return self.write_template(&scene, &sheet);
-        }
-        let deployment = problem.deploy(&design)?;
-        let path = ShapePath::new(&problem, &deployment);
-        if path.end() == 0.0 {
-            deployment.at_full_load()?;
+            let [file, picture] = write_template(&scene, &design, &self.out)?;
+            println!(
+                "fill x and y in {}, and leave them empty where a point is not measured; numbers in {}",
+                file.display(),
+                picture.display()
+            );
+            return Ok(());
         }
         let measured = self.measured.as_ref().context("no measured points")?;
-        let measured = self.fit(measured, &path)?;
-        let closed = match &self.closed {
-            Some(file) => Some(self.fit(file, &ShapePath::flat(path.sheet))?.best),
-            None => None,
-        };
-        let topology = &path.sheet.topology;
-        let supports = scene.config.supports.iter();
-        let supported: BTreeSet<usize> =
-            supports.map(|support| topology.number(support.panel)).collect();
-        let supported: Vec<usize> = supported.into_iter().collect();
-        let title = &scene.config.title;
-        let closed = closed.as_ref();
-        let report = MeasurementReport::new(title, path.sheet, &measured, closed, &supported);
-        let json = serde_json::to_string_pretty(&report)?;
-        let write = |name, text: &str| run_folder::write(&self.out, name, text);
-        write("comparison.json", &json)?;
-        let document = report.document();
-        write("comparison.txt", &document.to_string())?;
-        write("residuals.csv", &report.residuals_csv())?;
-        write("openings.csv", &report.openings_csv())?;
-        let svg = drawing::measured(path.sheet, &measured.best, &report);
-        picture::save(&svg, &self.out.join("comparison"), PICTURE_WIDTH)?;
-        let text = format!("{document}\nwritten to {}", self.out.display());
-        println!("{}", if self.json { json } else { text });
-        Ok(())
-    }
-
-    fn fit(&self, file: &Path, path: &ShapePath) -> Result<MeasuredSheet> {
-        let points = PointsFile::read(file, path.sheet.panels.len(), self.y_down)?;
-        MeasuredSheet::new(path, &points.points, points.scale())
-            .with_context(|| file.display().to_string())
-    }
-
-    /// Writes `template.csv`, to be filled, and `numbering.svg`.
-    fn write_template(&self, scene: &Scene, sheet: &Sheet) -> Result<()> {
-        let mut text = "panel,corner,x,y,flat_x_mm,flat_y_mm\n".to_owned();
-        for mark in Mark::all(sheet) {
-            let corner = mark.corner.map(|corner| corner.to_string());
-            let [x, y] = mark.flat(sheet);
-            let (panel, corner) = (mark.panel, corner.unwrap_or_default());
-            writeln!(text, "{panel},{corner},,,{x:.2},{y:.2}")?;
-        }
-        let file = self.out.join("template.csv");
-        ensure!(
-            !file.exists(),
-            "{} exists and may contain a measurement: choose another folder with --out",
-            file.display()
-        );
-        run_folder::write(&self.out, "template.csv", &text)?;
-        let svg = drawing::numbering(&scene.config.title, sheet);
-        let [_, picture] = picture::save(&svg, &self.out.join("numbering"), PICTURE_WIDTH)?;
-        println!(
-            "fill x and y in {}, and leave them empty where a point is not measured; numbers in {}",
-            file.display(),
-            picture.display()
-        );
-        Ok(())
+        let files = (measured.as_path(), self.closed.as_deref());
+        let report = compare(&scene, &design, files, self.y_down, &self.out)?;
+        let text = format!("{}\nwritten to {}", report.document(), self.out.display());
+        print(self.json, &report, text)
     }
 }

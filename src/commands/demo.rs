@@ -2,10 +2,7 @@
 
 use anyhow::{Result, ensure};
 use clap::Args;
-use std::{
-    path::{Path, PathBuf},
-    time::Instant,
-};
+use std::{path::Path, time::Instant};
 use support::table::Table;
 
 /// Run the whole chain once: window solves, database, training, design, cut file
@@ -39,7 +36,7 @@ impl DemoCommand {
             run(words.collect())?;
             times.push((what, start.elapsed().as_secs_f64()));
         }
-        println!("\n{}\n{}", time_table(&times), product_table());
+        println!("\n{}\nwritten to {FOLDER}; open design/run.html there", time_table(&times));
         Ok(())
     }
 }
@@ -48,31 +45,6 @@ fn time_table(times: &[(&str, f64)]) -> Table {
     let mut table = Table::new(["step", "seconds"]);
     for (what, seconds) in times {
         table.row([(*what).to_owned(), format!("{seconds:.1}")]);
-    }
-    table
-}
-
-/// The files that the demo has written.
-fn product_table() -> Table {
-    let mut table = Table::new(["file", "path", "size (kB)"]);
-    for (what, name) in [
-        ("hinge database", "hinges.parquet"),
-        ("its manifest", "hinges.json"),
-        ("weights of the hinge energy", "weights/small.safetensors"),
-        ("their card", "weights/small.json"),
-        ("parity plot", "weights/small-parity.png"),
-        ("learning curve", "weights/small-learning-curve.png"),
-        ("flat pattern", "design/flat.png"),
-        ("deployed sheet", "design/deployed.png"),
-        ("cut file", "design/cut.dxf"),
-        ("mounting kit", "design/mount.pdf"),
-        ("report", "design/report.txt"),
-        ("page of the run", "design/run.html"),
-    ] {
-        let path = PathBuf::from(FOLDER).join(name);
-        let size = std::fs::metadata(&path)
-            .map_or("missing".into(), |file| format!("{:.1}", file.len() as f64 / 1024.0));
-        table.row([what.to_owned(), path.display().to_string(), size]);
     }
     table
 }

@@ -1,8 +1,5 @@
 //! `kirigami design`: cut pattern and ligament widths for scenes, and the cut files.
 
-#[cfg(feature = "pipeline")]
-mod by_elements;
-
 use crate::ui::{
     self, interrupt, processors,
     with_unit::{self, CornerTolerance},
@@ -18,7 +15,7 @@ use clap::Args;
 use output::report::Report;
 use scene::{
     Level, Scene, SceneConfig,
-    design_run::OnStep,
+    design_run::{Designed, OnStep},
     run_inputs::{SCENE_FILE, scene_file},
 };
 use std::path::{Path, PathBuf};
@@ -165,8 +162,14 @@ impl DesignCommand {
         self.level == Some(Level::Final) && of_scene != Level::Final
     }
 
+    #[cfg(feature = "pipeline")]
+    fn search_by_elements(&self, scene: &Scene, progress: OnStep) -> Result<Designed> {
+        let solves = crate::commands::pipeline::solve_args::SolveArgs::default().solves()?;
+        app::final_search::search_by_elements(scene, solves, progress)
+    }
+
     #[cfg(not(feature = "pipeline"))]
-    fn search_by_elements(&self, _: &Scene, _: OnStep) -> Result<scene::design_run::Designed> {
+    fn search_by_elements(&self, _: &Scene, _: OnStep) -> Result<Designed> {
         anyhow::bail!(
             "the level `final` needs finite elements: install the whole program, as the README says"
         )

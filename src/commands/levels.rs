@@ -4,14 +4,10 @@ use crate::{
     commands::inspect::scene_args::Inspected,
     ui::{interrupt, print_of},
 };
-use analysis::levels::{LevelCost, Levels, levels};
+use analysis::levels::levels;
 use anyhow::Result;
 use app::{design_checks::record, progress::announce};
 use clap::Args;
-use support::{
-    document::Document,
-    table::{Cell, Table},
-};
 
 /// Compare the levels of a scene: seconds of a search, and the difference to the finest level
 ///
@@ -38,54 +34,10 @@ impl LevelsCommand {
         let found = levels(&scene, &design, stop, &mut |level| {
             announce(&format!("level {level}"));
         })?;
-        print_of(self.json, &name, &found, document(&found))?;
+        print_of(self.json, &name, &found, found.document())?;
         if self.inspected.chosen().is_run(&scene) {
             record(&scene, &design, |checks| checks.levels = Some(found))?;
         }
         Ok(())
     }
-}
-
-fn document(found: &Levels) -> Document {
-    let mut table = Table::new([
-        "level",
-        "step\ns",
-        "search\ns",
-        "corners, rms\nmm",
-        "largest\nmm",
-        "load\n%",
-        "D_peak\n",
-    ]);
-    found.levels.iter().for_each(|level| table.row(cells(level)));
-    let finest = found.levels.last().map_or("", |level| level.level.name());
-    let mut page = Document::default();
-    page.table(table);
-    page.text(format!(
-        "step, search: of the search, at the speed of its first ten steps; corners, load, D_peak: differences to `{finest}`"
-    ));
-    page.list(found.levels.iter().filter_map(|level| {
-        let failure = level.failure.as_ref()?;
-        Some(format!("{}: {failure}", level.level))
-    }));
-    page.list(found.others.iter().map(|other| {
-        let corners = other
-            .effect
-            .as_ref()
-            .map_or("not known".into(), |effect| format!("{:.3} mm", effect.corners[1]));
-        format!("no level lowers: {}, {corners}", other.cause.name())
-    }));
-    page
-}
-
-fn cells(level: &LevelCost) -> [Cell; 7] {
-    let difference = level.difference.as_ref();
-    [
-        Cell::text(level.level.name()),
-        Cell::fixed(level.step, 4),
-        Cell::fixed(level.search, 1),
-        Cell::fixed(difference.map(|found| found.corners[0]), 3),
-        Cell::fixed(difference.map(|found| found.corners[1]), 3),
-        Cell::fixed(difference.and_then(|found| found.load).map(|x| 100.0 * x), 2),
-        Cell::fixed(difference.and_then(|found| found.damage), 4),
-    ]
 }

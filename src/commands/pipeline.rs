@@ -1,7 +1,15 @@
 //! The subcommands of the pipeline from a material to weights; absent from a build for design
 //! alone.
 
-use crate::commands::{campaign, dataset, mesh, solve, surrogate, train, verify};
+mod campaign;
+mod dataset;
+mod mesh;
+mod solve;
+pub(super) mod solve_args;
+mod surrogate;
+mod train;
+mod verify;
+mod window_args;
 
 subcommands! {
     pub(crate) enum PipelineCommand {

@@ -1,7 +1,6 @@
 //! Findings: statements about a material, a design or a sheet, with their severity.
 
 use serde::{Deserialize, Serialize};
-use std::fmt;
 
 /// How grave a finding is.
 #[derive(
@@ -20,7 +19,8 @@ pub enum Severity {
 }
 
 /// A statement about a material or a sheet.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, derive_more::Display)]
+#[display("{severity}: {message}")]
 pub struct Finding {
     /// The consequence.
     pub severity: Severity,
@@ -33,11 +33,5 @@ impl Severity {
     pub fn finding(self, message: String) -> Finding {
         let severity = self;
         Finding { severity, message }
-    }
-}
-
-impl fmt::Display for Finding {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        write!(f, "{}: {}", self.severity, self.message)
     }
 }

@@ -8,7 +8,6 @@ use crate::in_file;
 use crate::name::Name;
 use crate::quantity::{Quantity::Extension, are_units, bare};
 use serde::Serialize;
-use std::fmt;
 use std::path::Path;
 use support::text_table::{NumberStyle, TextRow, TextTable};
 use support::{Fault, regular_file, text_file, unread};
@@ -203,7 +202,8 @@ fn no_table(text: &str) -> String {
 // `Largeur (mm): 10`.
 
 /// A dimension of a specimen that its file states.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, derive_more::Display)]
+#[display("{} {value} mm (line {line})", name.replace('-', " "))]
 pub struct StatedDimension {
     /// Which: the option of the command line without its dashes.
     pub name: &'static str,
@@ -211,12 +211,6 @@ pub struct StatedDimension {
     pub value: f64,
     /// Number of the line in the file, from 1.
     pub line: u64,
-}
-
-impl fmt::Display for StatedDimension {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        write!(f, "{} {} mm (line {})", self.name.replace('-', " "), self.value, self.line)
-    }
 }
 
 /// The dimensions in the lines above a table, and the lines that name one and state none of the

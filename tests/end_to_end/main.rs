@@ -18,4 +18,5 @@ mod scripted_slurm;
 mod slurm;
 mod static_page;
 mod studio;
+mod studio_controls;
 mod studio_page;

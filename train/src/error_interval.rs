@@ -8,7 +8,6 @@ use dataset::SolvedRay;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use serde::Serialize;
-use std::fmt;
 use surrogate::Surrogate;
 
 /// Number of draws.
@@ -19,7 +18,8 @@ const QUANTILES: [f64; 2] = [0.025, 0.975];
 const QUANTITIES: usize = 4;
 
 /// A relative root mean square error and its 95 % interval (%).
-#[derive(Clone, Copy, Debug, Serialize)]
+#[derive(Clone, Copy, Debug, Serialize, derive_more::Display)]
+#[display("{error:.2} % (95 % interval {:.2} to {:.2})", interval[0], interval[1])]
 pub struct ErrorInterval {
     /// The error of all rays.
     pub error: f64,
@@ -46,13 +46,6 @@ impl ErrorInterval {
         let found = (rays.len() >= Self::LEAST_RAYS).then(|| intervals(&rays))?;
         let is_known = |found: &Self| found.error.is_finite() && found.interval[1].is_finite();
         found.iter().all(is_known).then_some(found)
-    }
-}
-
-impl fmt::Display for ErrorInterval {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let [low, high] = self.interval;
-        write!(f, "{:.2} % (95 % interval {low:.2} to {high:.2})", self.error)
     }
 }
 

@@ -13,7 +13,6 @@ use crate::{
 };
 use hinge::HingeDeformation;
 use serde::Serialize;
-use std::fmt;
 use support::{statistics::root_mean_square, vectors::dot};
 
 /// How a load step ended.
@@ -70,7 +69,8 @@ pub struct Effort {
 }
 
 /// The state at one load factor.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, derive_more::Display)]
+#[display("load factor {load_factor:.4}: {status:?}, {}, {} iterations", residual_in_words(*residual), effort.iterations)]
 pub struct LoadStep {
     /// zeta: i/N, or under displacement control the multiplier of the stroke. 0 while the weight
     /// comes on, unless a stroke of zero is prescribed meanwhile.
@@ -130,19 +130,6 @@ pub(crate) fn residual_in_words(residual: f64) -> String {
         format!("relative residual {residual:.1e}")
     } else {
         "forces that are no finite numbers".into()
-    }
-}
-
-/// One line: load factor, status, residual and iterations.
-impl fmt::Display for LoadStep {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let (factor, status, residual) = (self.load_factor, self.status, self.residual);
-        write!(
-            f,
-            "load factor {factor:.4}: {status:?}, {}, {} iterations",
-            residual_in_words(residual),
-            self.effort.iterations
-        )
     }
 }
 

@@ -15,7 +15,6 @@ use crate::{
 };
 use serde::{Deserialize, Serialize};
 use serde_json::json;
-use std::fmt;
 use std::fs::File;
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
@@ -133,7 +132,8 @@ pub fn finished_windows(
 // share the folder. Together they do the same jobs as one run of the whole list.
 
 /// The part of the jobs that one run works on; written `2/4` for the second of four.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, derive_more::Display)]
+#[display("{index}/{count}")]
 pub struct Shard {
     /// Number of the shard, 1 to `count`.
     index: usize,
@@ -147,12 +147,6 @@ impl Shard {
     /// Whether the job at an index of the list belongs to the shard.
     pub fn holds(self, job: usize) -> bool {
         job % self.count == self.index - 1
-    }
-}
-
-impl fmt::Display for Shard {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        write!(f, "{}/{}", self.index, self.count)
     }
 }
 

@@ -73,18 +73,13 @@ pub struct Solution<P = Vec<HingeSample>> {
 }
 
 /// Versions of the external programs that determine a result.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, derive_more::Display)]
+#[display("gmsh {gmsh} and ccx {ccx}")]
 pub struct ToolVersions {
     /// Version of gmsh.
     pub gmsh: String,
     /// Version of CalculiX.
     pub ccx: String,
-}
-
-impl std::fmt::Display for ToolVersions {
-    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
-        write!(f, "gmsh {} and ccx {}", self.gmsh, self.ccx)
-    }
 }
 
 // What a kind of finite-element problem must state, so that it can be solved, attempted again and

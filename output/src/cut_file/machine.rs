@@ -7,7 +7,7 @@ use crate::cut_file::{
 };
 use design::geometry::polygon::{bounds, distance_to_outline, size};
 use serde::{Deserialize, Serialize};
-use std::{fmt, path::Path};
+use std::path::Path;
 use support::{Extremes, Fault, ensure, refuse, toml_file};
 
 /// The shipped table.
@@ -86,7 +86,8 @@ fn compensating() -> String {
 }
 
 /// The smallest features of a sheet, and its size (mm).
-#[derive(Clone, Copy, Debug, Serialize)]
+#[derive(Clone, Copy, Debug, Serialize, derive_more::Display)]
+#[display("smallest hole {hole:.2} mm, slits {slot:.2} mm, narrowest ligament next to its hole {bridge:.2} mm, hole to edge {edge:.2} mm; sheet {:.1} x {:.1} mm", size[0], size[1])]
 pub struct Features {
     /// Diameter of the smallest hole.
     pub hole: f64,
@@ -216,18 +217,6 @@ impl CutLines {
             edge: least(&mut holes.iter().map(|(centre, radius)| to_edge(*centre) - radius)),
             size: size(bounds(self.outlines.iter().flatten().copied())),
         }
-    }
-}
-
-impl fmt::Display for Features {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let [width, height] = self.size;
-        write!(
-            f,
-            "smallest hole {:.2} mm, slits {:.2} mm, narrowest ligament next to its hole {:.2} mm, hole to edge {:.2} mm; sheet {width:.1} \
-             x {height:.1} mm",
-            self.hole, self.slot, self.bridge, self.edge
-        )
     }
 }
 

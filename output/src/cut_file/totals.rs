@@ -5,10 +5,13 @@ use crate::{
     display::Shape,
 };
 use serde::Serialize;
-use std::{collections::BTreeMap, fmt};
+use std::collections::BTreeMap;
 
 /// Totals of a drawing in cutting order.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, derive_more::Display)]
+#[display(
+    "{holes} holes, {slits} slits, {pierces} pierces; {cut_m:.2} m of cuts, {idle_m:.2} m of idle travel"
+)]
 pub struct Totals {
     /// Number of holes.
     pub holes: usize,
@@ -32,16 +35,6 @@ impl Totals {
             cut_m: 1e-3 * ordered.cuts().map(Shape::length).sum::<f64>(),
             idle_m: 1e-3 * ordered.idle_travel(home),
         }
-    }
-}
-
-impl fmt::Display for Totals {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        write!(
-            f,
-            "{} holes, {} slits, {} pierces; {:.2} m of cuts, {:.2} m of idle travel",
-            self.holes, self.slits, self.pierces, self.cut_m, self.idle_m
-        )
     }
 }
 

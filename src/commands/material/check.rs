@@ -1,15 +1,13 @@
 //! `kirigami material check`: what a material means for windows and sheets.
 
+use crate::ui::print;
 use analysis::material_check::{MaterialCheck, usual_widths};
 use anyhow::{Result, bail, ensure};
 use clap::Args;
 use hinge::{Regime, SheetMaterial};
 use scene::{SceneConfig, run_inputs::scene_file};
 use std::path::PathBuf;
-use support::{
-    table::{Cell, Table},
-    toml_file,
-};
+use support::toml_file;
 
 /// Check a material before windows are solved with it
 ///
@@ -51,48 +49,11 @@ impl CheckCommand {
             );
         }
         let check = MaterialCheck::new(&material, w_lig);
-        if self.json {
-            println!("{}", serde_json::to_string_pretty(&check)?);
-        } else {
-            print(&material, &check);
-        }
+        print(self.json, &check, check.document(&material))?;
         match check.errors().count() {
             0 => Ok(()),
             1 => bail!("the material has 1 error for this use"),
             count => bail!("the material has {count} errors for this use"),
         }
-    }
-}
-
-fn print(material: &SheetMaterial, check: &MaterialCheck) {
-    println!("{}, {} mm (law {})\n", material.name, material.thickness, check.law_hash);
-    println!(
-        "*ELASTIC as the window solver reads it: E = {} MPa, nu = {}",
-        material.young, material.poisson
-    );
-    println!("*PLASTIC:");
-    let mut rows = Table::new(["row", "true stress, MPa", "plastic strain", "slope, MPa"]);
-    for (index, [stress, strain]) in material.plastic.iter().enumerate() {
-        let slope = match material.plastic.get(index + 1) {
-            Some([next, to]) => format!("{:.0}", (next - stress) / (to - strain)),
-            None => "constant".into(),
-        };
-        rows.row([(index + 1).to_string(), stress.to_string(), strain.to_string(), slope]);
-    }
-    println!("{rows}\n");
-    let mut widths =
-        Table::new(["w_lig\nmm", "w/t", "buckles at\ndeg", "surface yields at\ndeg", "tears"]);
-    for it in &check.ligaments {
-        widths.row([
-            Cell::fixed(it.w_lig, 2),
-            Cell::fixed(it.slenderness, 2),
-            Cell::fixed(it.buckles_at_deg, 2),
-            Cell::fixed(it.yields_at_deg, 1),
-            Cell::text(it.tears()),
-        ]);
-    }
-    println!("{widths}\n");
-    for verdict in &check.verdicts {
-        println!("{verdict}");
     }
 }

@@ -1,16 +1,16 @@
 //! The network of one round: several weights are fine-tuned on its rays, and one network learns the
 //! rays and their median.
 
+use crate::train::kept_fit;
 use ::train::{Distillation, TrainingConfig, TrainingData};
 use anyhow::{Context, Result};
-use app::train::kept_fit;
 use dataset::Database;
 use hinge::{HingeDeformation, HingeDesign};
 use std::{path::PathBuf, sync::atomic::AtomicBool};
 use surrogate::Surrogate;
 
 /// What the trainings of all rounds have in common.
-pub(super) struct FineTuning {
+pub(super) struct FineTuning<'a> {
     /// Weights of another material, with which fine-tuning starts.
     pub parents: Vec<Surrogate>,
     pub config: TrainingConfig,
@@ -19,10 +19,10 @@ pub(super) struct FineTuning {
     /// Folder of the trained networks.
     pub fits: PathBuf,
     /// Stops a training.
-    pub stop: &'static AtomicBool,
+    pub stop: &'a AtomicBool,
 }
 
-impl FineTuning {
+impl FineTuning<'_> {
     /// The network of the first `rays` rays of the campaign, and the time of all trainings that it
     /// took (s). One parent alone is fine-tuned.
     pub(super) fn network(&self, rays: usize, database: &Database) -> Result<(Surrogate, f64)> {

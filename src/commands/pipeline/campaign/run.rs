@@ -1,14 +1,14 @@
 //! `kirigami campaign run`
 
 use super::campaign_args::{CampaignArgs, print_tally};
-use crate::{
-    commands::solve_args::{FeSolver, SolveArgs},
-    ui::interrupt,
-};
+use crate::commands::pipeline::solve_args::SolveArgs;
 use anyhow::{Result, bail, ensure};
-use app::{failure::Unfinished, progress::Progress};
+use app::{
+    failure::Unfinished,
+    solves::{RayProgress, Solves},
+};
 use clap::Args;
-use fe_driver::{RunOptions, Shard, Tally};
+use fe_driver::{CalculiX, RunOptions, Shard, Tally};
 use std::{path::Path, time::Duration};
 use verification::every_ray_failed;
 
@@ -37,39 +37,24 @@ pub(crate) struct RunCommand {
 impl RunCommand {
     pub(crate) fn run(&self) -> Result<()> {
         let folder = self.campaign.folder();
+        let Solves { workers, stop } = self.solve.solves()?;
         let options = RunOptions {
             shard: self.shard,
-            workers: self.solve.workers(),
+            workers,
             time_limit: self.time_limit,
             retry: self.retry,
         };
-        let (campaign, solver) = (self.campaign.load()?, FeSolver::find()?);
-        let (stop, bar) = (interrupt::stop_flag()?, RayProgress::new(campaign.size()));
+        let (campaign, solver) = (self.campaign.load()?, CalculiX::find()?);
+        let bar = RayProgress::new(campaign.size());
         let show = &mut |now: &fe_driver::CampaignProgress| bar.show(now);
         let ended = fe_driver::run(&campaign, &folder, &solver, &options, stop, show)?;
-        bar.0.finish();
+        bar.finish();
         let tally = ended.tally;
         print_tally(&tally);
         for (job, reason) in &ended.disturbed {
             println!("ray {job} stays open, the machine ended its attempts: {reason}");
         }
         refuse_unfinished(&tally, &folder)
-    }
-}
-
-/// The progress of the rays of a campaign.
-pub(crate) struct RayProgress(pub Progress);
-
-impl RayProgress {
-    pub(crate) fn new(rays: usize) -> Self {
-        Self(Progress::new(rays, "rays"))
-    }
-
-    pub(crate) fn show(&self, now: &fe_driver::CampaignProgress) {
-        let tally = &now.tally;
-        let message = format!("{} samples, {} failed", tally.rows, tally.failed);
-        self.0.set_total(tally.closed() + tally.to_run());
-        self.0.show(tally.closed(), now.seconds_left, &message);
     }
 }
 

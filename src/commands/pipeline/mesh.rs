@@ -1,6 +1,6 @@
 //! `kirigami mesh`: the finite-element mesh of one hinge window.
 
-use crate::{commands::window_args::WindowArgs, ui::interrupt};
+use crate::{commands::pipeline::window_args::WindowArgs, ui::interrupt};
 use anyhow::Result;
 use app::{picture, run_folder};
 use clap::Args;
@@ -14,7 +14,7 @@ use std::{path::PathBuf, time::Duration};
 /// --tier default
 #[derive(Args)]
 #[command(allow_negative_numbers = true)]
-pub struct MeshCommand {
+pub(crate) struct MeshCommand {
     #[command(flatten)]
     window: WindowArgs,
     /// Mesh tier: tiny, small, default, fine, reference or paper; for plates plate-tiny, plate or

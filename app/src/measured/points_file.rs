@@ -18,16 +18,16 @@ type LengthUnit = Option<f64>;
 
 /// The points of a file.
 #[derive(Debug)]
-pub struct PointsFile {
+pub(super) struct PointsFile {
     /// Measured points in mm, or in pixels.
-    pub points: Vec<MeasuredPoint>,
+    pub(super) points: Vec<MeasuredPoint>,
     unit: LengthUnit,
 }
 
 impl PointsFile {
     /// Reads a file of points of a sheet with so many panels; lengths are in mm, or in the unit of
     /// the column `unit`.
-    pub fn read(path: &Path, panels: usize, y_down: bool) -> Result<Self> {
+    pub(super) fn read(path: &Path, panels: usize, y_down: bool) -> Result<Self> {
         let NamedTable { head, rows } =
             NamedTable::read(path).map_err(|error| anyhow!("cannot read {error}"))?;
         let located = |line: u64| format!("{}:{line}", path.display());
@@ -65,7 +65,7 @@ impl PointsFile {
     }
 
     /// Whether the scale of the points is known: the scale of pixels is not.
-    pub fn scale(&self) -> Scale {
+    pub(super) fn scale(&self) -> Scale {
         if self.unit.is_some() { Scale::Given } else { Scale::Free }
     }
 }

@@ -1,8 +1,8 @@
 //! `kirigami surrogate visited`
 
-use crate::commands::solve_args::{SolveArgs, task_error};
+use crate::commands::pipeline::solve_args::SolveArgs;
 use anyhow::{Context, Result, ensure};
-use app::{chosen::Chosen, run_folder, state_errors::print_errors};
+use app::{chosen::Chosen, run_folder, solves::task_error, state_errors::print_errors};
 use clap::Args;
 use dataset::{Database, SplitPlan};
 use scene::Scene;
@@ -49,7 +49,7 @@ impl VisitedCommand {
         let of_check = of_check.and_then(|check| check.tier.as_ref()?.parse().ok());
         let tier = verification_tier(of_check, weights)?;
         let _held = run_folder::hold(&self.out)?;
-        let service = SolveArgs::default().service(&self.out)?;
+        let service = SolveArgs::default().solves()?.service(&self.out)?;
         let sheets: Vec<_> = runs.iter().map(|(deployed, _)| deployed).collect();
         let paths = visited_paths(&sheets)?;
         let check = spot_check(&service, &paths, &first.material, tier).map_err(task_error)?;

@@ -1,7 +1,7 @@
-//! What `kirigami material learn` says at its end: what was reached, in which region, where
-//! the weights are and what comes next.
+//! What is said when a material is learned: what was reached, in which region, where the weights
+//! are and what comes next.
 
-use app::shell_word::shell_word;
+use crate::shell_word::shell_word;
 use hinge::TrainingDomain;
 use std::path::Path;
 use verification::{Accuracy, LearningRound};

@@ -1,10 +1,11 @@
 //! `kirigami campaign plan`
 
 use super::campaign_args::{CampaignArgs, print_tally};
-use crate::{commands::solve_args::FeSolver, ui::processors};
+use crate::ui::processors;
 use anyhow::Result;
 use app::progress::duration;
 use clap::Args;
+use fe_driver::CalculiX;
 use support::table::Table;
 
 /// Print what a run would solve, why, and the estimated time
@@ -20,7 +21,7 @@ pub(crate) struct PlanCommand {
 impl PlanCommand {
     pub(super) fn run(&self) -> Result<()> {
         let folder = self.campaign.folder();
-        let versions = FeSolver::find()?.versions();
+        let versions = CalculiX::find()?.versions();
         let plan = fe_driver::plan(&self.campaign.load()?, &folder, &versions)?;
         if self.json {
             println!("{}", serde_json::to_string_pretty(&plan)?);

@@ -1,21 +1,20 @@
 //! `kirigami solve`: one window solved along one ray, printed as a table.
 
-use crate::{
-    commands::{
-        solve_args::{FeSolver, LIMIT},
-        window_args::WindowArgs,
-    },
-    ui::interrupt,
-};
+use crate::{commands::pipeline::window_args::WindowArgs, ui::interrupt};
 use anyhow::{Error, Result, bail};
-use app::{failure::Unfinished, input_file, progress::watched, run_folder};
+use app::{
+    failure::Unfinished,
+    input_file,
+    progress::watched,
+    run_folder,
+    solves::{LIMIT, ray_table},
+};
 use clap::Args;
-use fe_driver::{Cause, Ray, Solver, WindowProblem, WindowSolve, reached};
-use hinge::{HingeDeformation, HingeSample, SheetMaterial};
+use fe_driver::{CalculiX, Cause, Ray, Solver, WindowProblem, WindowSolve, reached};
+use hinge::{HingeDeformation, SheetMaterial};
 use mesher::Tier;
 use serde_json::json;
 use std::{path::PathBuf, time::Duration};
-use support::table::{Cell, Table};
 
 /// Solve one hinge window by finite elements and print its ray
 ///
@@ -25,7 +24,7 @@ use support::table::{Cell, Table};
 /// degrees: kirigami solve --theta-deg 45 --tier tiny
 #[derive(Args)]
 #[command(allow_negative_numbers = true)]
-pub struct SolveCommand {
+pub(crate) struct SolveCommand {
     #[command(flatten)]
     window: WindowArgs,
     /// Relative rotation at the end of the ray (degrees); positive opens the main cut
@@ -65,7 +64,7 @@ impl SolveCommand {
         let material = SheetMaterial::load(&self.material)?;
         let _held = run_folder::hold(&self.out)?;
         let stop = interrupt::stop_flag()?;
-        let solver = FeSolver { print_all: true, ..FeSolver::find()? };
+        let solver = CalculiX { print_all: true, ..CalculiX::find()? };
         let problem = WindowProblem::new(hinge, &material, self.tier);
         let solve = WindowSolve::new(problem, &solver.versions());
         let limit = Duration::from_secs(self.time_limit_s);
@@ -106,42 +105,4 @@ impl SolveCommand {
             Some(reason) => bail!("the solve stopped before the end of the ray: {reason}"),
         }
     }
-}
-
-/// The rows of a ray, thinned to about twenty.
-fn ray_table(samples: &[HingeSample]) -> Table {
-    let mut table = Table::new([
-        "lambda",
-        "theta\ndeg",
-        "a\nmm",
-        "s\nmm",
-        "W\nN mm",
-        "F_a\nN",
-        "F_s\nN",
-        "M_theta\nN mm",
-        "D",
-        "D_peak",
-        "u_z\nmm",
-        "energy\nresidual",
-    ]);
-    let stride = samples.len().div_ceil(20).max(1);
-    for (i, x) in samples.iter().enumerate() {
-        if (samples.len() - 1 - i).is_multiple_of(stride) {
-            table.row([
-                Cell::fixed(x.lambda, 3),
-                Cell::fixed(x.theta.to_degrees(), 2),
-                Cell::fixed(x.a, 3),
-                Cell::fixed(x.s, 3),
-                Cell::fixed(x.w, 3),
-                Cell::fixed(x.f_a, 3),
-                Cell::fixed(x.f_s, 3),
-                Cell::fixed(x.m_theta, 3),
-                Cell::fixed(x.d, 5),
-                Cell::fixed(x.d_peak, 3),
-                Cell::fixed(x.uz_max, 2),
-                Cell::text(format!("{:.1e}", x.energy_residual)),
-            ]);
-        }
-    }
-    table
 }

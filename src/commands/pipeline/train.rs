@@ -1,7 +1,7 @@
 //! `kirigami train`: trains the weights of the hinge energy on a hinge database.
 
 use crate::{
-    commands::campaign::{DATABASE, SPOT_CHECK},
+    commands::pipeline::campaign::{DATABASE, SPOT_CHECK},
     ui::interrupt,
 };
 use anyhow::Result;
@@ -21,7 +21,7 @@ use std::path::{Path, PathBuf};
 /// to NAME-3, its ensemble. It tests them on the spot check of the campaign, and records the errors
 /// on their cards.
 #[derive(Args, Clone)]
-pub struct TrainCommand {
+pub(crate) struct TrainCommand {
     /// Database as written by `kirigami campaign collect` (Parquet with its manifest), or a
     /// campaign (TOML)
     #[arg(value_name = "DATABASE")]

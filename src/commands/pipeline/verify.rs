@@ -1,21 +1,17 @@
 //! `kirigami verify`: a designed sheet by finite elements.
 
-mod whole_sheet;
-
 use crate::{
-    commands::{
-        inspect::scene_args::Inspected,
-        solve_args::{SolveArgs, task_error},
-    },
+    commands::{inspect::scene_args::Inspected, pipeline::solve_args::SolveArgs},
     ui::{self, count::count},
 };
-use anyhow::{Context, Result};
-use app::run_folder;
+use anyhow::{Context, Result, ensure};
+use app::{design_checks::record, run_folder, solves::task_error, whole_sheet::WholeSheetTask};
 use clap::Args;
+use design::pattern::design_vector::DesignVector;
 use mesher::{Panels, Tier};
 use output::drawing;
-use scene::Posture;
-use serde::Serialize;
+use scene::{Posture, Scene};
+use serde::{Serialize, de::DeserializeOwned};
 use std::path::PathBuf;
 use support::document::Document;
 use verification::{ElementWindows, SheetErrors, balanced, verification_tier};
@@ -28,7 +24,7 @@ use verification::{ElementWindows, SheetErrors, balanced, verification_tier};
 /// the design of the scene's run is verified, or the start design if the scene has no run. Example:
 /// kirigami verify configs/scenes/a4-plate.toml --equilibrium
 #[derive(Args)]
-pub struct VerifyCommand {
+pub(crate) struct VerifyCommand {
     #[command(flatten)]
     inspected: Inspected,
     /// Mesh tier of the windows [default: the tier of the weights' database, or the finer tier that
@@ -48,11 +44,11 @@ pub struct VerifyCommand {
     /// openings, energies and forces of supports, and reports whether the panels stay in their plane.
     /// Writes sheet.md, sheet.vtu and pictures from above and from the side. Rewrites report and
     /// page of the run with what was found
-    #[arg(long, value_name = "PANELS", group = "mode", num_args = 0..=1, default_missing_value = "rigid", value_parser = whole_sheet::panels)]
+    #[arg(long, value_name = "PANELS", group = "mode", num_args = 0..=1, default_missing_value = "rigid", value_parser = named::<Panels>)]
     sheet: Option<Panels>,
     /// What keeps the panels of the whole sheet in their plane: held-flat, mounted (on a board),
     /// lying (on a table; meshed panels), hanging, free [default: the posture of the scene]
-    #[arg(long, value_name = "SUPPORT", requires = "sheet", value_parser = whole_sheet::support)]
+    #[arg(long, value_name = "SUPPORT", requires = "sheet", value_parser = named::<Posture>)]
     support: Option<Posture>,
     /// The flanks of cuts touch in the whole sheet of meshed panels, instead of passing through each
     /// other; several times the time. Where they meet, the solve may end early
@@ -79,7 +75,7 @@ impl VerifyCommand {
             .context("only a surrogate can be verified: set level = \"standard\" in the scene")?;
         let tier = verification_tier(self.tier, surrogate)?;
         let _held = run_folder::hold(&self.out)?;
-        let service = &self.solve.service(&self.out)?;
+        let service = &self.solve.solves()?.service(&self.out)?;
         let windows = ElementWindows { tier, service };
         let found = balanced(&scene, &design, &windows, self.rounds);
         let (found, _) = found.map_err(task_error)?;
@@ -92,8 +88,42 @@ impl VerifyCommand {
         self.print(&equilibrium, &document)
     }
 
+    /// Solves the whole sheet, and says what it found.
+    fn whole_sheet(
+        &self,
+        scene: &Scene,
+        design: &DesignVector,
+        name: &str,
+        panels: Panels,
+    ) -> Result<()> {
+        let sheet = WholeSheetTask {
+            tier: self.tier,
+            support: self.support,
+            panels,
+            contact: self.contact,
+            out: &self.out,
+            solves: self.solve.solves()?,
+        };
+        let check = sheet.check(scene, design, name)?;
+        self.print(&check, &check.document())?;
+        if let Some(found) = check.summary().filter(|_| self.inspected.chosen().is_run(scene)) {
+            record(scene, design, |checks| checks.whole_sheet = Some(found))?;
+        }
+        ensure!(
+            !check.path.is_empty(),
+            "no increment of the sheet converged; see {}",
+            self.out.display()
+        );
+        Ok(())
+    }
+
     fn print(&self, found: &impl Serialize, document: &Document) -> Result<()> {
         let text = format!("{document}\nwritten to {}", self.out.display());
         ui::print(self.json, found, text)
     }
+}
+
+/// Reads a value by its name in a scene.
+fn named<T: DeserializeOwned>(text: &str) -> Result<T, String> {
+    serde_json::from_value(text.into()).map_err(|error| error.to_string())
 }

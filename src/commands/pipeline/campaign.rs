@@ -8,7 +8,6 @@ mod run;
 mod status;
 
 pub(crate) use campaign_args::{DATABASE, SPOT_CHECK};
-pub(crate) use run::RayProgress;
 
 subcommands! {
     /// Regenerate the hinge database: a campaign of window solves
