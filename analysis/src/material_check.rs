@@ -13,10 +13,10 @@
 use crate::calibration::CALIBRATION;
 use hinge::{Regime, SheetMaterial};
 use serde::Serialize;
-use support::Extremes;
 use support::document::Document;
 use support::severity::{Finding, Severity};
 use support::table::{Cell, Table};
+use support::{Extremes, Joined};
 
 /// The minimum and maximum ligament width (mm) for which there are hinge data, in a sheet of the given
 /// thickness (mm).
@@ -85,7 +85,7 @@ impl MaterialCheck {
         let mut page = Document::default();
         page.text(format!("{name}, {thickness} mm (law {})", self.law_hash));
         page.text(format!(
-            "*ELASTIC as the window solver reads it: E = {young} MPa, nu = {poisson}; *PLASTIC:"
+            "*ELASTIC as the window solver reads it: E = {young} MPa, nu = {poisson}\n*PLASTIC:"
         ));
         let mut rows = Table::new(["row", "true stress, MPa", "plastic strain", "slope, MPa"]);
         for (index, [stress, strain]) in plastic.iter().enumerate() {
@@ -108,7 +108,7 @@ impl MaterialCheck {
             ]);
         }
         page.table(widths);
-        page.list(self.verdicts.iter().map(ToString::to_string));
+        page.text(self.verdicts.iter().map(Finding::to_string).joined("\n"));
         page
     }
 

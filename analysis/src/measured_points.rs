@@ -4,11 +4,11 @@ use design::geometry::polygon::distance;
 use design::sheet::cut_sheet::Sheet;
 use design::sheet::kinematics::deployed;
 use serde::Serialize;
-use std::fmt;
 use support::Point;
 
 /// A point of a panel that can be measured.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, derive_more::Display)]
+#[display("P{panel} {}", corner.map_or("centre".into(), |corner| format!("corner {corner}")))]
 pub struct Mark {
     /// Number of the panel, row by row from the lower left.
     pub panel: usize,
@@ -55,16 +55,6 @@ impl Mark {
     pub fn deployed(self, sheet: &Sheet, configuration: &[[f64; 3]]) -> Point {
         let (panel, motion) = (&sheet.panels[self.panel], configuration[self.panel]);
         deployed(panel, motion, self.flat(sheet))
-    }
-}
-
-impl fmt::Display for Mark {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let Self { panel, corner } = self;
-        match corner {
-            Some(corner) => write!(f, "P{panel} corner {corner}"),
-            None => write!(f, "P{panel} centre"),
-        }
     }
 }
 

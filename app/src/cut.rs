@@ -175,7 +175,7 @@ pub struct Verdict {
 }
 
 impl Display for Verdict {
-    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+    fn fmt(&self, f: &mut Formatter) -> fmt::Result {
         match &self.refuses[..] {
             [] => write!(f, "{}: no published limit is broken", self.name),
             refuses => write!(f, "{} refuses {}", self.name, refuses.join(", ")),

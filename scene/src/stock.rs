@@ -5,11 +5,12 @@ use serde::{
     Deserialize, Serialize,
     de::{IntoDeserializer, value::Error},
 };
-use std::{fmt, ops::RangeInclusive, str::FromStr};
+use std::{ops::RangeInclusive, str::FromStr};
 
 /// A paper: ISO 216 A, or of North America (ANSI A and B).
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema, strum::Display)]
 #[serde(rename_all = "lowercase")]
+#[strum(serialize_all = "lowercase")]
 pub enum Paper {
     /// 148 x 210 mm.
     A5,
@@ -42,13 +43,6 @@ impl Paper {
             Self::Letter => [215.9, 279.4],
             Self::Tabloid => [279.4, 431.8],
         }
-    }
-}
-
-/// The name in files and on the command line.
-impl fmt::Display for Paper {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        self.serialize(f)
     }
 }
 

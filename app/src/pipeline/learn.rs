@@ -158,7 +158,7 @@ impl MaterialLearning<'_> {
                 Err(end) => return Ok((end, rounds, domain)),
             };
             if let Some(bar) = bar {
-                bar.finish();
+                bar.0.finish();
             }
             database.write(&self.out.join("hinges.parquet"), true)?;
             let (weights, training_s) = fine_tuning.network(rays, &database)?;

@@ -58,7 +58,7 @@ impl<'a> Solves<'a> {
 }
 
 /// The progress of the rays of a campaign.
-pub struct RayProgress(Progress);
+pub struct RayProgress(pub Progress);
 
 impl RayProgress {
     /// The progress of a campaign of some rays.
@@ -72,11 +72,6 @@ impl RayProgress {
         let message = format!("{} samples, {} failed", tally.rows, tally.failed);
         self.0.set_total(tally.closed() + tally.to_run());
         self.0.show(tally.closed(), now.seconds_left, &message);
-    }
-
-    /// Clears the bar.
-    pub fn finish(self) {
-        self.0.finish();
     }
 }
 

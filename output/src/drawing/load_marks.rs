@@ -1,5 +1,5 @@
-//! Supports and loads in a state of the path: a symbol on every supported panel, an arrow along
-//! every force, a curved arrow in the sense of every couple.
+//! Supports and loads in a state of the path: a symbol on every supported panel, with the number of
+//! its fastener on a board, an arrow along every force, a curved arrow in the sense of every couple.
 
 use crate::{
     display::{Anchor, Canvas, Style},
@@ -10,7 +10,7 @@ use design::{
     equilibrium::load_step::LoadStep,
     sheet::{cut_sheet::Sheet, kinematics::deployed as moved},
 };
-use scene::{Scene, placement::placed};
+use scene::{Posture, Scene, placement::placed};
 use std::f64::consts::PI;
 use support::{Extremes, Point};
 
@@ -122,13 +122,18 @@ pub(super) fn draw(canvas: &mut Canvas, scene: &Scene, sheet: &Sheet, step: &Loa
 
 fn supports(canvas: &mut Canvas, scene: &Scene, sheet: &Sheet, step: &LoadStep) {
     let placed = placed(scene, sheet, &step.configuration);
-    for support in scene.actuation().supports {
+    let mounted = scene.config.posture.is_some_and(|posture| posture.kind == Posture::Mounted);
+    let (half, style) = (SUPPORT * canvas.unit, canvas.haloed(INK));
+    for (place, support) in scene.actuation().supports.iter().enumerate() {
         let k = support.panel;
         let [x, y] = moved(&sheet.panels[k], placed[k], sheet.panels[k].reference);
-        let around =
-            |[a, b]: &Point| [x + a * SUPPORT * canvas.unit, y + b * SUPPORT * canvas.unit];
+        let around = |[a, b]: &Point| [x + a * half, y + b * half];
         let corners: Vec<_> = support.symbol.iter().map(around).collect();
         canvas.polygon(&corners, Style::fill(INK));
+        if mounted {
+            let number = (place + 1).to_string();
+            canvas.text(around(&[1.4, -0.5]), 1.6 * half, Anchor::Start, style, &number);
+        }
     }
 }
 

@@ -40,7 +40,9 @@ impl Report {
         let [start, best] = [&self.before, &self.after].map(|scores| rounded(scores.loss, 4));
         let search = self.end_of_search();
         page.text(format!("{search}; loss, which is minimised: {start} at the start, {best} mm^2"));
-        page.table(self.objective());
+        if self.after.loss != self.before.loss {
+            page.table(self.objective());
+        }
         if self.rose() {
             page.text(OUTLINE_ROSE);
         }

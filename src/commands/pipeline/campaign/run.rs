@@ -48,7 +48,7 @@ impl RunCommand {
         let bar = RayProgress::new(campaign.size());
         let show = &mut |now: &fe_driver::CampaignProgress| bar.show(now);
         let ended = fe_driver::run(&campaign, &folder, &solver, &options, stop, show)?;
-        bar.finish();
+        bar.0.finish();
         let tally = ended.tally;
         print_tally(&tally);
         for (job, reason) in &ended.disturbed {
