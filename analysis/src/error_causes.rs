@@ -305,7 +305,7 @@ impl LoadedSheet<'_> {
             largest = largest.max(separation);
         }
         let source =
-            format!("up to {largest:.3} w_lig from the ray (docs/TRIED.md, docs/results/plates)");
+            format!("up to {largest:.3} w_lig from the ray (docs/TRIED.md, docs/results/paths)");
         Ok((isotropic(&sizes, &self.designs), source))
     }
 
